@@ -141,6 +141,7 @@ impl BesideCommand {
             .allow_hyphen_values(true)
             .trailing_var_arg(true)
             .hide(true)
+            .help("Command line of the program")
             .value_parser(value_parser!(OsString));
         let (typed, build) = (self.typed(), self.how_to_build());
         clap::Command::new(name)

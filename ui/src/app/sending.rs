@@ -16,7 +16,7 @@ use crate::app::held_places::HeldPlaces;
 use crate::app::studio::Studio;
 use crate::rig::device_setup::DeviceSetupRunner;
 use crate::rig::state::BrushContact;
-use crate::sessions::SessionProcesses;
+use crate::sessions::Sessions;
 
 /// Interval at which a request that waits for its stroke is checked again.
 const BARRIER_LOOK: Duration = Duration::from_millis(50);
@@ -28,7 +28,7 @@ pub(super) struct Sending {
     pending: PendingSender,
     held_places: HeldPlaces,
     device_setup: DeviceSetupRunner,
-    sessions: SessionProcesses,
+    sessions: Sessions,
 }
 
 impl Sending {
@@ -44,7 +44,7 @@ impl Sending {
             pending: PendingSender::new(&**bus, topics)?,
             held_places: HeldPlaces::default(),
             device_setup: DeviceSetupRunner::default(),
-            sessions: SessionProcesses::own(),
+            sessions: Sessions::default(),
         })
     }
 

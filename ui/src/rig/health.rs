@@ -248,7 +248,7 @@ mod tests {
     use maulstick_types::stylus::Trouble;
 
     use super::*;
-    use crate::sessions::player::ReplayProgress;
+    use crate::sessions::progress::ReplayProgress;
     use crate::test_support::panel_bench::status;
     use maulstick_client::state::PaintNode;
     use maulstick_ui_kit::notifications::Severity;

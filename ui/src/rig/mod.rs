@@ -4,8 +4,7 @@
 //! | --- | --- |
 //! | `state` | what is known of the rig; plain data |
 //! | [`brushes`] | newest sample and bend of each brush |
-//! | `child_process` | a command that runs beside the window |
-//! | `device_order` | orders to it, and a fit in progress |
+//! | `device_order` | orders to the set-up of devices, and a fit in progress |
 //! | `device_setup` | changes and listings of devices, on a thread |
 //! | `health` | events of the other processes |
 //! | `requests` | commands that wait to be sent |
@@ -13,7 +12,6 @@
 
 pub mod brushes;
 pub(crate) mod carried_paint;
-pub(crate) mod child_process;
 pub(crate) mod device_order;
 pub(crate) mod device_setup;
 pub(crate) mod health;

@@ -18,8 +18,8 @@ use maulstick_ui_kit::swatches::Showing;
 
 use crate::rig::carried_paint::CarriedPaint;
 use crate::rig::device_order::FitProgress;
-use crate::sessions::player::ReplayProgress;
-use crate::sessions::recorder::RecordingProgress;
+use crate::sessions::progress::RecordingProgress;
+use crate::sessions::progress::ReplayProgress;
 
 /// A brush of the rig.
 #[derive(Clone, Debug, Default)]

@@ -1,13 +1,14 @@
-//! Sessions: recorded and played by processes that the window starts, as a user at a terminal would.
+//! Sessions: recorded and played by tasks beside the window.
 //!
-//! | module | holds |
+//! | module | content |
 //! | --- | --- |
-//! | [`recorder`] | `maulstick recording record` |
-//! | [`player`] | `maulstick recording replay` |
+//! | [`recorder`], [`player`] | start and end of a recording and of a replay |
+//! | [`progress`] | where they are |
 //! | [`recording_mark`] | the red dot while a recording is written |
 //! | [`transport_bar`] | the bar and the keys while one is played |
 
 pub(crate) mod player;
+pub(crate) mod progress;
 pub(crate) mod recorder;
 pub(crate) mod recording_mark;
 #[cfg(test)]
@@ -15,20 +16,20 @@ pub(crate) mod tests;
 pub(crate) mod transport_bar;
 
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
 
 use eframe::egui::Context;
-use maulstick_rig::program::{command, own_program};
+use maulstick_recorder::{Order, Player, Recorder, ReplaySettings, TakePlace};
+use maulstick_ui_kit::notifications::Notifications;
+use tokio::runtime::{Builder, Runtime};
 
 use crate::rig::state::RigState;
-use crate::sessions::player::{Player, TransportOrder};
-use crate::sessions::recorder::Recorder;
-use maulstick_ui_kit::notifications::Notifications;
 
 /// File ending of a recording.
 pub(crate) const RECORDING: &str = "mcap";
 /// Name of the device whose strokes those of a motion are.
 const MOTION: &str = "motion";
+/// Threads of recorder and player.
+const THREADS: usize = 2;
 
 /// A request to recorder or player.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,33 +57,19 @@ pub(crate) enum SessionOrder {
         turn_deg: f64,
     },
     /// An order to what plays.
-    Transport(TransportOrder),
+    Transport(Order),
 }
 
-/// The processes of recorder and player.
-#[derive(Debug)]
-pub(crate) struct SessionProcesses {
-    program: PathBuf,
+/// Recorder and player, on threads of their own from the first order on.
+#[derive(Debug, Default)]
+pub(crate) struct Sessions {
+    runtime: Option<Runtime>,
     recorder: Option<Recorder>,
     player: Option<Player>,
 }
 
-impl SessionProcesses {
-    /// Runs `program`.
-    pub(crate) fn new(program: PathBuf) -> Self {
-        Self {
-            program,
-            recorder: None,
-            player: None,
-        }
-    }
-
-    /// Runs the program of this process.
-    pub(crate) fn own() -> Self {
-        Self::new(own_program())
-    }
-
-    /// Carries out orders, and takes in what the processes say.
+impl Sessions {
+    /// Carries out orders, and takes what recorder and player report.
     pub(crate) fn poll(
         &mut self,
         context: &Context,
@@ -90,46 +77,7 @@ impl SessionProcesses {
         (rig, notifications): (&mut RigState, &mut Notifications),
     ) {
         for order in orders {
-            let begun = match order {
-                SessionOrder::Record if self.recorder.is_none() => {
-                    let command = self.command(["recording", "record"], rig);
-                    Recorder::start(context, command, rig)
-                        .map(|recorder| self.recorder = Some(recorder))
-                }
-                SessionOrder::Play { recording, forget } if self.player.is_none() => {
-                    let command = self.command(["recording", "replay"], rig);
-                    Player::start(context, command, (recording, forget), rig)
-                        .map(|player| self.player = Some(player))
-                }
-                SessionOrder::PutDown {
-                    take,
-                    at_mm: [x, y],
-                    scale,
-                    turn_deg,
-                } if self.player.is_none() => {
-                    let mut command = self.command(["recording", "replay"], rig);
-                    // Under a name of its own: the stylus that it was recorded of may be in the rig.
-                    command.args(["--as", MOTION, "--at", &format!("{x:.4},{y:.4}")]);
-                    command.args(["--scale", &format!("{scale:.6}")]);
-                    command.args(["--turn", &format!("{turn_deg:.4}")]);
-                    Player::start(context, command, (take, false), rig)
-                        .map(|player| self.player = Some(player))
-                }
-                SessionOrder::StopRecording => {
-                    self.recorder.iter().for_each(Recorder::stop);
-                    Ok(())
-                }
-                SessionOrder::Transport(order) => {
-                    if let Some(player) = &mut self.player {
-                        player.send(order, rig);
-                    }
-                    Ok(())
-                }
-                SessionOrder::Record | SessionOrder::Play { .. } | SessionOrder::PutDown { .. } => {
-                    Ok(())
-                }
-            };
-            if let Err(error) = begun {
+            if let Err(error) = self.carry_out(order, rig) {
                 notifications.fault(
                     tr!("maulstick cannot be started: {error}", error),
                     tr!("Start the rig again."),
@@ -137,22 +85,93 @@ impl SessionProcesses {
             }
         }
         if let Some(recorder) = &mut self.recorder
-            && recorder.follow(context, rig, notifications)
+            && recorder::poll(recorder, context, rig, notifications)
         {
             self.recorder = None;
         }
         if let Some(player) = &mut self.player
-            && player.follow(context, rig, notifications)
+            && player::poll(player, context, rig, notifications)
         {
             self.player = None;
         }
     }
 
-    fn command(&self, words: [&str; 2], rig: &RigState) -> Command {
-        let mut command = command(&self.program);
-        command.args(words).args(["--name", &rig.live.name]);
-        command.stdin(Stdio::null());
-        command
+    fn carry_out(&mut self, order: SessionOrder, rig: &mut RigState) -> std::io::Result<()> {
+        match order {
+            SessionOrder::Record if self.recorder.is_none() => {
+                self.recorder = Some(recorder::start(self.runtime()?, rig));
+            }
+            SessionOrder::StopRecording => self.recorder.iter().for_each(Recorder::stop),
+            SessionOrder::Play { recording, forget } => {
+                let settings = ReplaySettings {
+                    forget,
+                    ..ReplaySettings::new(recording)
+                };
+                self.play(settings, rig)?;
+            }
+            SessionOrder::PutDown {
+                take,
+                at_mm,
+                scale,
+                turn_deg,
+            } => self.play(put_down(take, at_mm, scale, turn_deg), rig)?,
+            SessionOrder::Transport(order) => {
+                if let Some(player) = &self.player {
+                    player::send(player, order, rig);
+                }
+            }
+            SessionOrder::Record => {}
+        }
+        Ok(())
+    }
+
+    fn play(&mut self, settings: ReplaySettings, rig: &mut RigState) -> std::io::Result<()> {
+        if self.player.is_none() {
+            self.player = Some(player::start(self.runtime()?, settings, rig));
+        }
+        Ok(())
+    }
+
+    fn runtime(&mut self) -> std::io::Result<&Runtime> {
+        let runtime = match self.runtime.take() {
+            Some(runtime) => runtime,
+            None => Builder::new_multi_thread()
+                .worker_threads(THREADS)
+                .thread_name("sessions")
+                .enable_all()
+                .build()?,
+        };
+        Ok(self.runtime.insert(runtime))
+    }
+}
+
+impl Drop for Sessions {
+    fn drop(&mut self) {
+        let Some(runtime) = self.runtime.take() else {
+            return;
+        };
+        // A file without its index would have to be salvaged.
+        if let Some(recorder) = self.recorder.take() {
+            recorder.stop();
+            if let Err(fault) = runtime.block_on(recorder.ended()) {
+                tracing::warn!("the recording: {}", fault.what);
+            }
+        }
+        runtime.shutdown_background();
+    }
+}
+
+/// Settings that put a take down under a name of its own: the stylus that it was recorded of may be in the rig.
+fn put_down(take: PathBuf, at_mm: [f64; 2], scale: f64, turn_deg: f64) -> ReplaySettings {
+    ReplaySettings {
+        device: Some(MOTION.to_owned()),
+        place: Some(TakePlace {
+            at_mm: Some(at_mm),
+            scale: Some(scale),
+            turn_deg: Some(turn_deg),
+            head_m: None,
+        }),
+        ..ReplaySettings::new(take)
     }
 }
 

@@ -1,6 +1,5 @@
-//! Recorder and player with a program in the place of `maulstick`, and their controls without one.
+//! Recorder and player where no rig runs, what they report, and their controls.
 
-use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -8,36 +7,17 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_device::player::Rate;
+use maulstick_recorder::{Continuation, CopyTrouble, Position, RecorderEvent, ReplayReport};
 use maulstick_ui_kit::notifications::Severity;
 
 use super::*;
-use crate::sessions::player::{Position, ReplayProgress};
-use crate::sessions::recorder::{RecordingProgress, place};
+use crate::sessions::progress::RecordingProgress;
+use crate::sessions::progress::ReplayProgress;
+use crate::sessions::recorder::{notify, place};
 use crate::sessions::transport_bar::TransportBar;
 use crate::test_support::{context_bench, overlay_bench, panel_bench};
 use overlay_bench::{Bench, ctrl, press, until, window};
-
-/// A program that records until it is interrupted, and notes the orders that it gets while it plays.
-const PROGRAM: &str = r#"#!/bin/sh
-for file; do :; done
-case "$2 $file" in
-*full*) printf 'error: no room\n  --> /x\n help: free some space\n' >&2; exit 1;;
-*bare*) echo '{"recording": "/x"}'; echo '{"lacks_painting": "it is in no file"}'
- echo '{"recording": "/x-2", "broke_off": true}';;
-record*) trap 'exit 0' INT; : > "$file"
- while :; do sleep 0.01; done;;
-replay*) echo "$*" > "$file.args"
- echo '{"painting": "/p/sea-replay.maul"}'
- echo '{"position_s": 1.5, "length_s": 60.0, "rate": "1", "paused": false}'
- while read -r line; do
-    echo "$line" >> "$file.orders"
-    case "$line" in
-    pause) echo '{"position_s": 2.0, "length_s": 60.0, "rate": "1", "paused": true}';;
-    end) exit 0;;
-    esac
- done;;
-esac
-"#;
 
 /// A recording in progress.
 pub(crate) fn recording() -> RecordingProgress {
@@ -53,7 +33,7 @@ pub(crate) fn replay(paused: bool) -> ReplayProgress {
         position: Some(Position {
             position_s: 42.0,
             length_s: 190.0,
-            rate: "1".to_owned(),
+            rate: Rate::Times(1.0),
             paused,
         }),
         painting: Some("/p/sea-replay.maul".into()),
@@ -62,57 +42,57 @@ pub(crate) fn replay(paused: bool) -> ReplayProgress {
 }
 
 struct Desk {
-    processes: SessionProcesses,
+    sessions: Sessions,
     rig: RigState,
-    told: Vec<(Severity, String)>,
+    shown: Vec<(Severity, String)>,
     folder: tempfile::TempDir,
 }
 
 impl Desk {
-    fn new() -> Self {
+    /// The window of a rig that does not run, with a painting of this name.
+    fn new(painting: &str) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
-        let program = folder.path().join("program");
-        std::fs::write(&program, PROGRAM).expect("written");
-        let all = std::fs::Permissions::from_mode(0o755);
-        std::fs::set_permissions(&program, all).expect("set");
+        let mut rig = panel_bench::rig();
+        rig.live.name = format!("none-{}", std::process::id());
+        let path = folder.path().join(painting).display().to_string();
+        rig.live.paint.as_mut().expect("a node").status.path = path;
         Self {
-            processes: SessionProcesses::new(program),
-            rig: panel_bench::rig(),
-            told: Vec::new(),
+            sessions: Sessions::default(),
+            rig,
+            shown: Vec::new(),
             folder,
         }
     }
 
-    fn painting(&mut self, name: &str) {
-        let path = self.folder.path().join(name).display().to_string();
-        self.rig.live.paint.as_mut().expect("a node").status.path = path;
-    }
-
-    fn turn(&mut self, orders: Vec<SessionOrder>) {
+    fn poll(&mut self, orders: Vec<SessionOrder>) {
         let mut notifications = Notifications::default();
-        let told = (&mut self.rig, &mut notifications);
-        self.processes.poll(&Context::default(), orders, told);
-        let told = notifications.shown().iter();
-        self.told
-            .extend(told.map(|toast| (toast.severity, toast.what.clone())));
+        let target = (&mut self.rig, &mut notifications);
+        self.sessions.poll(&Context::default(), orders, target);
+        self.shown.extend(shown(&notifications));
     }
 
     fn until(&mut self, is_so: impl Fn(&Self) -> bool) {
         let give_up = Instant::now() + Duration::from_secs(30);
         while !is_so(self) {
-            assert!(Instant::now() < give_up, "{:?}", self.told);
-            self.turn(Vec::new());
+            assert!(Instant::now() < give_up, "{:?}", self.shown);
+            self.poll(Vec::new());
             std::thread::yield_now();
         }
     }
 }
 
+fn shown(notifications: &Notifications) -> Vec<(Severity, String)> {
+    let shown = notifications.shown().iter();
+    shown
+        .map(|toast| (toast.severity, toast.what.clone()))
+        .collect()
+}
+
 #[test]
-fn a_recording_stands_beside_the_painting_until_it_is_ended_and_its_file_is_told() {
-    let mut desk = Desk::new();
-    desk.painting("Sea.maul");
+fn a_recording_stands_beside_the_painting_and_its_failure_is_shown() {
+    let mut desk = Desk::new("Sea.maul");
     desk.rig.live.now_ns = 7;
-    desk.turn(vec![SessionOrder::Record, SessionOrder::Record]);
+    desk.poll(vec![SessionOrder::Record]);
     let recording = desk.rig.recording.clone().expect("it records");
     assert_eq!(recording.begun_ns, 7);
     let name = recording.file.file_name().expect("a name");
@@ -122,39 +102,32 @@ fn a_recording_stands_beside_the_painting_until_it_is_ended_and_its_file_is_told
         "{name}"
     );
     assert_eq!(recording.file.parent(), Some(desk.folder.path()));
-    desk.until(|_| recording.file.exists());
-    desk.turn(vec![SessionOrder::StopRecording]);
     desk.until(|desk| desk.rig.recording.is_none());
-    let [(Severity::Note, told)] = &desk.told[..] else {
-        panic!("{:?}", desk.told);
-    };
-    assert!(told.contains(&*name), "{told}");
+    assert_eq!(desk.shown.len(), 1);
+    assert_eq!(desk.shown[0].0, Severity::Fault);
 }
 
 #[test]
-fn what_a_recording_lacks_and_why_one_fails_is_told() {
-    let mut desk = Desk::new();
-    desk.painting("bare.maul");
-    desk.turn(vec![SessionOrder::Record]);
-    desk.until(|desk| desk.rig.recording.is_none());
-    let (weight, told) = desk.told.first().expect("told");
-    assert!(
-        *weight == Severity::Fault && told.contains("it is in no file"),
-        "{told}"
-    );
-    let goes_on = |(_, told): &(Severity, String)| told.contains("x-2");
-    assert!(desk.told.iter().any(goes_on), "{:?}", desk.told);
-    let mut desk = Desk::new();
-    desk.processes = SessionProcesses::new("/none/maulstick".into());
-    desk.turn(vec![SessionOrder::Record]);
-    let (_, told) = desk.told.first().expect("told");
-    assert!(told.contains("cannot be started"), "{told}");
-    assert_eq!(desk.rig.recording, None);
-    let mut desk = Desk::new();
-    desk.painting("full.maul");
-    desk.turn(vec![SessionOrder::Record]);
-    desk.until(|desk| desk.rig.recording.is_none());
-    assert_eq!(desk.told, [(Severity::Fault, "no room".to_owned())]);
+fn what_a_recording_lacks_and_where_it_goes_on_is_shown() {
+    let mut notifications = Notifications::default();
+    for event in [
+        RecorderEvent::Begun { file: "/x".into() },
+        RecorderEvent::PaintingUnavailable(CopyTrouble::InMemory),
+        RecorderEvent::Continued {
+            file: "/x-1".into(),
+            cause: Continuation::Full,
+        },
+        RecorderEvent::Continued {
+            file: "/x-2".into(),
+            cause: Continuation::JournalBroke,
+        },
+    ] {
+        notify(&event, &mut notifications);
+    }
+    let shown = shown(&notifications);
+    let severities: Vec<Severity> = shown.iter().map(|(severity, _)| *severity).collect();
+    assert_eq!(severities, [Severity::Fault, Severity::Note]);
+    assert!(shown[1].1.contains("/x-2"), "{shown:?}");
 }
 
 #[test]
@@ -174,85 +147,46 @@ fn no_recording_takes_the_place_of_another_file() {
 
 #[test]
 fn a_motion_is_played_at_its_place_under_a_name_of_its_own() {
-    let mut desk = Desk::new();
-    let take = desk.folder.path().join("sweep.mcap");
-    let arguments = desk.folder.path().join("sweep.mcap.args");
-    desk.turn(vec![SessionOrder::PutDown {
-        take,
-        at_mm: [-12.5, 30.0],
-        scale: 2.0,
-        turn_deg: -15.0,
-    }]);
-    desk.until(|desk| {
-        desk.rig
-            .replay
-            .as_ref()
-            .is_some_and(|replay| replay.position.is_some())
+    let settings = put_down("/takes/sweep.mcap".into(), [-12.5, 30.0], 2.0, -15.0);
+    assert_eq!(settings.device.as_deref(), Some(MOTION));
+    let place = settings.place.expect("a place");
+    assert_eq!(place.at_mm, Some([-12.5, 30.0]));
+    assert_eq!((place.scale, place.turn_deg), (Some(2.0), Some(-15.0)));
+}
+
+#[test]
+fn reports_say_where_a_replay_is_and_which_painting_it_has() {
+    let mut progress = ReplayProgress::new(Path::new("/s.mcap"));
+    let painting = || "/p/sea-replay.maul".into();
+    progress.update(ReplayReport::Opening {
+        painting: painting(),
     });
-    let told = std::fs::read_to_string(arguments).expect("noted");
-    for part in [
-        "--as motion",
-        "--at -12.5",
-        "30.0000",
-        "--scale 2.0",
-        "--turn -15.0",
-    ] {
-        assert!(told.contains(part), "{told}");
-    }
-    desk.turn(vec![SessionOrder::Transport(TransportOrder::End)]);
-    desk.until(|desk| desk.rig.replay.is_none());
-}
-
-#[test]
-fn orders_are_lines_to_the_player_whose_lines_say_where_it_is() {
-    let mut desk = Desk::new();
-    let recording = desk.folder.path().join("s.mcap");
-    let forget = true;
-    desk.turn(vec![SessionOrder::Play {
-        recording: recording.clone(),
-        forget,
-    }]);
-    let position = |desk: &Desk| {
-        let replay = desk.rig.replay.as_ref();
-        replay.and_then(|replay| replay.position.clone())
-    };
-    desk.until(|desk| position(desk).is_some());
-    let orders = [
-        TransportOrder::Seek(12.5),
-        TransportOrder::Skip(-5.0),
-        TransportOrder::Step,
-        TransportOrder::Rate("max".to_owned()),
-    ];
-    desk.turn(orders.map(SessionOrder::Transport).to_vec());
-    let at = position(&desk).expect("a position");
-    assert_eq!((at.position_s, at.length_s), (12.5, 60.0));
-    desk.turn(vec![SessionOrder::Transport(TransportOrder::Pause)]);
-    desk.until(|desk| position(desk).is_some_and(|at| at.paused && at.position_s == 2.0));
-    desk.turn(vec![SessionOrder::Transport(TransportOrder::End)]);
-    desk.until(|desk| desk.rig.replay.is_none());
-    let told = "The recording is painted in /p/sea-replay.maul.";
-    assert_eq!(desk.told, [(Severity::Note, told.to_owned())]);
-    let read = |ending: &str| {
-        let path = recording.with_extension(ending);
-        std::fs::read_to_string(path).expect("noted")
-    };
-    let orders = read("mcap.orders");
-    assert_eq!(orders, "seek 12.500\nskip -5\nstep\nrate max\npause\nend\n");
-    let args = format!(
-        "recording replay --name default --json --forget {}\n",
-        recording.display()
+    assert!(progress.opens && progress.position.is_none());
+    progress.update(ReplayReport::Painting {
+        painting: painting(),
+    });
+    let position = replay(false).position.expect("a position");
+    progress.update(ReplayReport::Position(position));
+    assert_eq!(
+        progress,
+        ReplayProgress {
+            position: Some(position),
+            painting: Some(painting()),
+            ..ReplayProgress::new(Path::new("/s.mcap"))
+        }
     );
-    assert_eq!(read("mcap.args"), args);
 }
 
 #[test]
-fn a_recording_that_cannot_be_played_is_told_and_the_bar_goes() {
-    let mut desk = Desk::new();
-    let recording = desk.folder.path().join("full.mcap");
+fn a_recording_that_cannot_be_played_is_shown_and_the_bar_goes() {
+    let mut desk = Desk::new("Sea.maul");
+    let recording = desk.folder.path().join("none.mcap");
     let forget = false;
-    desk.turn(vec![SessionOrder::Play { recording, forget }]);
-    desk.until(|desk| !desk.told.is_empty() && desk.rig.replay.is_none());
-    assert_eq!(desk.told, [(Severity::Fault, "no room".to_owned())]);
+    desk.poll(vec![SessionOrder::Play { recording, forget }]);
+    assert!(desk.rig.replay.is_some());
+    desk.until(|desk| desk.rig.replay.is_none());
+    assert_eq!(desk.shown.len(), 1);
+    assert_eq!(desk.shown[0].0, Severity::Fault);
 }
 
 fn orders(harness: &mut Harness<'static, Bench>) -> Vec<SessionOrder> {
@@ -260,7 +194,7 @@ fn orders(harness: &mut Harness<'static, Bench>) -> Vec<SessionOrder> {
     harness.state_mut().requests.take_session_orders()
 }
 
-fn transport(order: TransportOrder) -> [SessionOrder; 1] {
+fn transport(order: Order) -> [SessionOrder; 1] {
     [SessionOrder::Transport(order)]
 }
 
@@ -305,11 +239,11 @@ fn each_control_of_the_bar_gives_its_order() {
     harness.state_mut().rig.replay = Some(replay(false));
     harness.run_steps(2);
     for (label, order) in [
-        ("Back 5 s", TransportOrder::Skip(-5.0)),
-        ("Pause", TransportOrder::Pause),
-        ("On by one event", TransportOrder::Step),
-        ("Forth 5 s", TransportOrder::Skip(5.0)),
-        ("End the replay", TransportOrder::End),
+        ("Back 5 s", Order::Skip(-5.0)),
+        ("Pause", Order::Pause),
+        ("On by one event", Order::Step),
+        ("Forth 5 s", Order::Skip(5.0)),
+        ("End the replay", Order::End),
     ] {
         harness.get_by_label(label).click();
         assert_eq!(orders(&mut harness), transport(order), "{label}");
@@ -318,12 +252,12 @@ fn each_control_of_the_bar_gives_its_order() {
     harness.get_by_label("Rate of the replay").click();
     harness.run_steps(3);
     harness.get_by_label("× 4").click();
-    let rate = TransportOrder::Rate("4".to_owned());
+    let rate = Order::Rate(Rate::Times(4.0));
     assert_eq!(orders(&mut harness), transport(rate));
     harness.state_mut().rig.replay = Some(replay(true));
     harness.run_steps(2);
     harness.get_by_label("Play on").click();
-    assert_eq!(orders(&mut harness), transport(TransportOrder::Pause));
+    assert_eq!(orders(&mut harness), transport(Order::Pause));
 }
 
 #[test]
@@ -341,7 +275,7 @@ fn the_slider_seeks_where_it_is_let_go() {
     harness.hover_at(at(0.5));
     assert_eq!(orders(&mut harness), [], "it is still dragged");
     harness.drop_at(at(0.5));
-    let [SessionOrder::Transport(TransportOrder::Seek(seconds))] = orders(&mut harness)[..] else {
+    let [SessionOrder::Transport(Order::Seek(seconds))] = orders(&mut harness)[..] else {
         panic!("no seek");
     };
     assert!((85.0..105.0).contains(&seconds), "{seconds}");
@@ -350,7 +284,7 @@ fn the_slider_seeks_where_it_is_let_go() {
         .focus();
     press(&mut harness, Key::ArrowRight);
     let by_key = orders(&mut harness);
-    let [SessionOrder::Transport(TransportOrder::Seek(seconds))] = by_key[..] else {
+    let [SessionOrder::Transport(Order::Seek(seconds))] = by_key[..] else {
         panic!("{by_key:?}");
     };
     assert!(seconds > 42.0, "{seconds}");
@@ -360,15 +294,12 @@ fn the_slider_seeks_where_it_is_let_go() {
 fn keys_are_the_bars_while_a_session_is_painted_again_and_else_where_they_are_free() {
     let mut harness = window(None);
     let both = [
-        (Key::ArrowLeft, TransportOrder::Skip(-5.0)),
-        (Key::ArrowRight, TransportOrder::Skip(5.0)),
+        (Key::ArrowLeft, Order::Skip(-5.0)),
+        (Key::ArrowRight, Order::Skip(5.0)),
     ];
-    let of_session = [
-        (Key::Space, TransportOrder::Pause),
-        (Key::Period, TransportOrder::Step),
-    ];
+    let of_session = [(Key::Space, Order::Pause), (Key::Period, Order::Step)];
     harness.state_mut().rig.replay = Some(replay(false));
-    for (key, order) in both.clone().into_iter().chain(of_session) {
+    for (key, order) in both.into_iter().chain(of_session) {
         press(&mut harness, key);
         assert_eq!(orders(&mut harness), transport(order), "{key:?}");
     }

@@ -2,21 +2,31 @@
 
 use eframe::egui::{
     Align2, Area, Button, ComboBox, Context, Event, Frame, Id, Key, KeyboardShortcut, Modifiers,
-    Order, Response, Role, Slider, TextWrapMode, Ui, WidgetInfo,
+    Order as Layer, Response, Role, Slider, TextWrapMode, Ui, WidgetInfo,
 };
+
+use maulstick_device::player::Rate;
+use maulstick_recorder::{Order, Position};
 
 use crate::app::sides;
 use crate::dialogs::paths;
 use crate::input::keymap::Keymap;
 use crate::input::keys::written;
-use crate::sessions::player::{Position, ReplayProgress, TransportOrder};
+use crate::sessions::progress::ReplayProgress;
 use crate::sessions::{SessionOrder, clock};
 use crate::widgets::context::PanelContext;
 
 /// Time that a button or an arrow key goes, s.
 const SKIP_S: f64 = 5.0;
-/// The rates, as the player reads them.
-const RATES: [&str; 6] = ["0.25", "0.5", "1", "2", "4", "max"];
+/// The rates.
+const RATES: [Rate; 6] = [
+    Rate::Times(0.25),
+    Rate::Times(0.5),
+    Rate::Times(1.0),
+    Rate::Times(2.0),
+    Rate::Times(4.0),
+    Rate::Max,
+];
 /// Distance from the lower edge, above the command bar, points.
 const ABOVE: f32 = 48.0;
 /// Distance from the lower edge of what lies above the bar, points.
@@ -46,12 +56,12 @@ impl Control {
         }
     }
 
-    fn order(self) -> TransportOrder {
+    fn order(self) -> Order {
         match self {
-            Self::Back => TransportOrder::Skip(-SKIP_S),
-            Self::Pause => TransportOrder::Pause,
-            Self::Step => TransportOrder::Step,
-            Self::Forth => TransportOrder::Skip(SKIP_S),
+            Self::Back => Order::Skip(-SKIP_S),
+            Self::Pause => Order::Pause,
+            Self::Step => Order::Step,
+            Self::Forth => Order::Skip(SKIP_S),
         }
     }
 
@@ -107,7 +117,7 @@ impl TransportBar {
         let [least, most] = SLIDER;
         let slider = (free - REST).max(least).min(most);
         Area::new(Id::unique("transport"))
-            .order(Order::Middle)
+            .order(Layer::Middle)
             .anchor(Align2::CENTER_BOTTOM, [0.5 * (left - right), -ABOVE])
             .accessible_name(tr!("Playing a recording"))
             .show(context, |ui| {
@@ -124,12 +134,7 @@ impl TransportBar {
     }
 
     /// The controls; the order that one gives.
-    fn controls(
-        &mut self,
-        ui: &mut Ui,
-        replay: &ReplayProgress,
-        keymap: &Keymap,
-    ) -> Option<TransportOrder> {
+    fn controls(&mut self, ui: &mut Ui, replay: &ReplayProgress, keymap: &Keymap) -> Option<Order> {
         let mut order = None;
         match &replay.position {
             Some(position) => {
@@ -154,13 +159,14 @@ impl TransportBar {
             }
         }
         let words = tr!("End the replay");
-        match button(ui, "×", words).on_hover_text(words).clicked() {
-            true => Some(TransportOrder::End),
-            false => order,
+        if button(ui, "×", words).on_hover_text(words).clicked() {
+            Some(Order::End)
+        } else {
+            order
         }
     }
 
-    fn slider(&mut self, ui: &mut Ui, position: &Position) -> Option<TransportOrder> {
+    fn slider(&mut self, ui: &mut Ui, position: &Position) -> Option<Order> {
         let mut place_s = self.dragged_s.unwrap_or(position.position_s);
         let slider = Slider::new(&mut place_s, 0.0..=position.length_s.max(0.0)).show_value(false);
         let words = tr!("Place in the recording");
@@ -171,7 +177,7 @@ impl TransportBar {
         let (now, length) = (clock(place_s), clock(position.length_s));
         ui.label(tr!("{now} of {length}", now, length));
         let is_let_go = slider.drag_stopped() || slider.changed() && !slider.dragged();
-        is_let_go.then_some(TransportOrder::Seek(place_s))
+        is_let_go.then_some(Order::Seek(place_s))
     }
 }
 
@@ -182,27 +188,27 @@ fn button(ui: &mut Ui, sign: &str, words: &str) -> Response {
 }
 
 /// The choice of the rate.
-fn rate(ui: &mut Ui, position: &Position) -> Option<TransportOrder> {
-    let shown = |rate: &str| match rate {
-        "max" => tr!("rate|max").to_owned(),
-        rate => format!("× {rate}"),
+fn rate(ui: &mut Ui, position: &Position) -> Option<Order> {
+    let shown = |rate: Rate| match rate {
+        Rate::Max => tr!("rate|max").to_owned(),
+        Rate::Times(times) => format!("× {times}"),
     };
     let mut order = None;
     let combo = ComboBox::from_id_salt("rate")
         .width(64.0)
-        .selected_text(shown(&position.rate));
+        .selected_text(shown(position.rate));
     let combo = combo.show_ui(ui, |ui| {
         for rate in RATES {
             if ui
                 .selectable_label(rate == position.rate, shown(rate))
                 .clicked()
             {
-                order = Some(TransportOrder::Rate(rate.to_owned()));
+                order = Some(Order::Rate(rate));
             }
         }
     });
     let words = tr!("Rate of the replay");
-    let value = shown(&position.rate);
+    let value = shown(position.rate);
     combo.response.widget_info(|| WidgetInfo {
         current_text_value: Some(value.clone()),
         ..WidgetInfo::labeled(Role::ComboBox, true, words)

@@ -5,7 +5,7 @@
 //! | [`echo`], [`measure`] | contents and rates of live streams |
 //! | [`graph`] | the processes of a rig, and what they send each other, as a picture |
 //! | [`record`], [`recorder_words`] | recordings, made and kept within bounds; their events in words |
-//! | [`recording`], [`foxglove_export`] | recordings, looked at and written for Foxglove |
+//! | [`recording`], [`recording_info`], [`foxglove_export`] | recordings, looked at and written for Foxglove |
 //! | [`topic`] | the commands of live streams as a group |
 //! | [`bridge`] | live streams for Foxglove |
 //! | [`message_lines`] | messages as rows of a table and as lines of JSON |
@@ -19,6 +19,7 @@ mod message_lines;
 mod record;
 pub(crate) mod recorder_words;
 pub mod recording;
+mod recording_info;
 pub mod topic;
 
 use std::path::Path;

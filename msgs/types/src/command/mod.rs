@@ -11,7 +11,7 @@ use serde::de::Error as _;
 use crate::command::advice::Advice;
 pub use crate::command::detail::Detail;
 pub use crate::command::session::SessionCommand;
-use crate::edit::Edit;
+use crate::edit::{Edit, EditFields};
 use crate::limits::{CELLS, CELLS_IN_ALL, CELLS_M, STAINS_M};
 use crate::mixture::Mixture;
 use crate::scene::CANVAS;
@@ -428,6 +428,23 @@ message! {
         pub from: u64,
         /// Last number.
         pub to: u64,
+    }
+}
+
+impl<T: EditFields> From<T> for Command {
+    fn from(edit: T) -> Self {
+        Self::Edit(edit.into())
+    }
+}
+
+impl Command {
+    /// The fields of its edit, if it is one of this kind and they are in range.
+    #[must_use]
+    pub fn edit<T: EditFields>(&self) -> Option<T> {
+        match self {
+            Self::Edit(edit) => edit.get(),
+            _ => None,
+        }
     }
 }
 

@@ -9,7 +9,6 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-use crate::command::Command;
 use crate::wire::define::wire_struct;
 
 /// The name of an edit has at most this many bytes.
@@ -139,23 +138,6 @@ impl<T: EditFields> From<T> for Edit {
             name: T::NAME.to_owned(),
             // Structs of numbers and texts have a form in JSON.
             fields: serde_json::to_string(&edit).unwrap_or_default(),
-        }
-    }
-}
-
-impl<T: EditFields> From<T> for Command {
-    fn from(edit: T) -> Self {
-        Self::Edit(edit.into())
-    }
-}
-
-impl Command {
-    /// The fields of its edit, if it is one of this kind and they are in range.
-    #[must_use]
-    pub fn edit<T: EditFields>(&self) -> Option<T> {
-        match self {
-            Self::Edit(edit) => edit.get(),
-            _ => None,
         }
     }
 }

@@ -57,21 +57,11 @@ impl Writer<'_> {
             field: format!("{value:?}").chars().take(40).collect(),
             what: "of another type than in this version".into(),
         };
-        let number = match value {
-            Some(Value::Unsigned(number)) => *number,
-            Some(Value::Signed(number)) => number.cast_unsigned(),
-            Some(Value::Flag(flag)) => u64::from(*flag),
-            _ => 0,
-        };
-        let is_number = matches!(
-            value,
-            None | Some(Value::Unsigned(_) | Value::Signed(_) | Value::Flag(_))
-        );
         match (of, value) {
-            (Type::U8 | Type::Bool, _) if is_number => self.put(&number.to_le_bytes()[..1]),
-            (Type::U16, _) if is_number => self.put(&number.to_le_bytes()[..2]),
-            (Type::U32 | Type::I32, _) if is_number => self.put(&number.to_le_bytes()[..4]),
-            (Type::U64 | Type::I64, _) if is_number => self.put(&number.to_le_bytes()),
+            (Type::U8 | Type::Bool, value) if is_whole(value) => self.whole(value, 1),
+            (Type::U16, value) if is_whole(value) => self.whole(value, 2),
+            (Type::U32 | Type::I32, value) if is_whole(value) => self.whole(value, 4),
+            (Type::U64 | Type::I64, value) if is_whole(value) => self.whole(value, 8),
             (Type::F32, None) => self.put(&[0; 4]),
             (Type::F32, Some(Value::Single(value))) => self.put(&value.to_le_bytes()),
             (Type::F64, None) => self.put(&[0; 8]),
@@ -115,6 +105,17 @@ impl Writer<'_> {
             (_, None) => {}
         }
         Ok(())
+    }
+
+    /// Writes a whole number, or 0 without one, in its lowest bytes.
+    fn whole(&mut self, value: Option<&Value>, bytes: usize) {
+        let number = match value {
+            Some(Value::Unsigned(number)) => *number,
+            Some(Value::Signed(number)) => number.cast_unsigned(),
+            Some(Value::Flag(flag)) => u64::from(*flag),
+            _ => 0,
+        };
+        self.put(&number.to_le_bytes()[..bytes]);
     }
 
     fn defined(
@@ -231,4 +232,12 @@ fn as_json(value: &Value) -> serde_json::Value {
             json!({ &**name: serde_json::Value::Object(object(fields)) })
         }
     }
+}
+
+/// True for a whole number or a flag, and for nothing, which stands for 0.
+fn is_whole(value: Option<&Value>) -> bool {
+    matches!(
+        value,
+        None | Some(Value::Unsigned(_) | Value::Signed(_) | Value::Flag(_))
+    )
 }

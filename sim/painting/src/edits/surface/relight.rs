@@ -137,33 +137,43 @@ impl LightChange {
     /// # Errors
     /// [`ValueError::Idle`].
     pub fn check_idle(&self) -> Result<(), ValueError> {
-        match self.rule.as_deref() == Some("reference") && self.samples.is_some() {
-            true => Err(ValueError::Idle {
+        if self.rule.as_deref() == Some("reference") && self.samples.is_some() {
+            return Err(ValueError::Idle {
                 option: "a number of samples",
                 with: "the rule 'reference', which has all 101".to_owned(),
-            }),
-            false => Ok(()),
+            });
         }
+        Ok(())
     }
 }
 
+/// A text that is not an exposure or a direction.
 #[cfg(feature = "cli")]
-fn exposure(text: &str) -> Result<Exposure, String> {
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+enum LightTextError {
+    #[error("give a number, or auto")]
+    Exposure,
+    #[error("'{0}' is not three numbers such as -0.5,0.5,0.7")]
+    Direction(String),
+}
+
+#[cfg(feature = "cli")]
+fn exposure(text: &str) -> Result<Exposure, LightTextError> {
     match text.parse() {
         Ok(factor) => Ok(Exposure::Factor(factor)),
         Err(_) if text == "auto" => Ok(Exposure::Auto),
-        Err(_) => Err("give a number, or auto".to_owned()),
+        Err(_) => Err(LightTextError::Exposure),
     }
 }
 
 /// Reads `x,y,z`.
 #[cfg(feature = "cli")]
-fn three(text: &str) -> Result<[f64; 3], String> {
+fn three(text: &str) -> Result<[f64; 3], LightTextError> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|cell| cell.trim().parse()).collect();
     numbers
         .ok()
         .and_then(|numbers| numbers.try_into().ok())
-        .ok_or_else(|| format!("'{text}' is not three numbers such as -0.5,0.5,0.7"))
+        .ok_or_else(|| LightTextError::Direction(text.to_owned()))
 }
 
 impl EditFields for Relight {
