@@ -49,8 +49,11 @@ mod work;
 
 pub use listener::Listener;
 pub use recording::event::{Continuation, CopyTrouble, FileSummary, RecorderEvent};
-pub use recording::recorder::{Division, LEAST_LAST, Recorder, RecorderSettings};
+pub use recording::recorder::Recorder;
 pub use recording::ring::Ring;
+pub use recording::settings::{Division, LEAST_LAST, RecorderSettings};
 pub use replay::place::TakePlace;
-pub use replay::player::{GuideSettings, Guiding, Player, Position, ReplayReport, ReplaySettings};
+pub use replay::player::Player;
+pub use replay::report::{Guiding, Position, ReplayReport};
+pub use replay::settings::{GuideSettings, ReplaySettings};
 pub use replay::transport::{Order, RATES};

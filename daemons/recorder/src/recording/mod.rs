@@ -2,7 +2,8 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`recorder`] | settings, and the handle of a recorder at work |
+//! | [`settings`] | its settings |
+//! | [`recorder`] | the handle of a recorder at work |
 //! | [`task`] | the task |
 //! | [`event`] | what happens to a recording |
 //! | [`ring`] | the files of a recording, and those that go for newer ones |
@@ -17,4 +18,5 @@ mod painting_copy;
 mod part;
 pub(crate) mod recorder;
 pub(crate) mod ring;
+pub(crate) mod settings;
 mod task;

@@ -8,10 +8,8 @@ use std::path::{Path, PathBuf};
 use maulstick_rig::UserError;
 use maulstick_rig::files::{create_private, first_free, open_private};
 
-use super::recorder::Division;
+use super::settings::{Division, FILES};
 
-/// Files into which the time that is kept is divided.
-pub(super) const FILES: u32 = 5;
 /// Form of the name of a recording that the rig keeps, behind the name of the rig.
 const DATED: &str = "%Y-%m-%d %H.%M.%S";
 /// File ending of a recording.

@@ -18,8 +18,8 @@ use super::event::{Continuation, CopyTrouble, FileSummary, RecorderEvent};
 use super::journal_watch::{Break, JournalWatch};
 use super::painting_copy::PaintingCopy;
 use super::part::Part;
-use super::recorder::RecorderSettings;
 use super::ring::Ring;
+use super::settings::RecorderSettings;
 use crate::listener::{Listener, ReceivedMessage};
 use crate::session_file::JOURNAL;
 

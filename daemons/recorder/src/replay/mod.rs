@@ -2,7 +2,8 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`player`] | settings, and the handle of a player at work |
+//! | [`settings`], [`report`] | settings of a player, and its reports |
+//! | [`player`] | the handle of a player at work |
 //! | [`playback`] | transport, orders and reports of what plays |
 //! | [`transport`] | pause, seek, step, rate |
 //! | [`session`], [`session_painting`] | a session is painted again, in a painting of its own |
@@ -22,8 +23,10 @@ mod pacing;
 pub(crate) mod place;
 mod playback;
 pub(crate) mod player;
+pub(crate) mod report;
 mod senders;
 mod session;
 mod session_painting;
+pub(crate) mod settings;
 mod streams;
 pub(crate) mod transport;

@@ -6,7 +6,8 @@ use maulstick_bus::Wake;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender};
 use tokio::time::{Instant, sleep};
 
-use super::player::{Position, ReplayReport, ReplaySettings};
+use super::report::{Position, ReplayReport};
+use super::settings::ReplaySettings;
 use super::transport::{Order, Transport};
 
 /// Time between two reports of where it is.

@@ -18,8 +18,9 @@ use tokio::time::Instant;
 
 use super::events::Events;
 use super::playback::{Controls, Leap, Next, Playback};
-use super::player::{Call, ReplayReport, ReplaySettings};
+use super::report::ReplayReport;
 use super::session_painting::{SessionPainting, free_name};
+use super::settings::{Call, ReplaySettings};
 use crate::paintings::{open_begin, wrong};
 use crate::session_file::{Event, PAINTING, SessionFile};
 

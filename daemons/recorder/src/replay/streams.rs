@@ -19,8 +19,8 @@ use super::events::Events;
 use super::pacing::Pacing;
 use super::place::Place;
 use super::playback::{Controls, Next, Playback};
-use super::player::{Call, ReplaySettings};
 use super::senders::{DRIVING, Senders, drives};
+use super::settings::{Call, ReplaySettings};
 
 /// Topics that are sent again where none is named.
 const HANDS: [&str; 2] = ["stylus/*/sample", "control/*/sample"];

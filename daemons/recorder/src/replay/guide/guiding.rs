@@ -15,7 +15,7 @@ use super::traced::Traced;
 use crate::replay::consent::Consent;
 use crate::replay::driven::Driven;
 use crate::replay::playback::{Controls, REPORT_PERIOD};
-use crate::replay::player::{Guiding, ReplayReport};
+use crate::replay::report::{Guiding, ReplayReport};
 use crate::replay::transport::Order;
 
 /// Time between two guides.

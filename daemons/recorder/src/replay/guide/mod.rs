@@ -29,7 +29,7 @@ use self::guiding::Guidance;
 use self::traced::{Touch, Traced};
 use crate::replay::driven::{Driven, PATIENCE};
 use crate::replay::playback::Controls;
-use crate::replay::player::{Call, GuideSettings, ReplaySettings};
+use crate::replay::settings::{Call, GuideSettings, ReplaySettings};
 
 /// Topics of the hands.
 const HANDS: &str = "stylus/*/sample";
