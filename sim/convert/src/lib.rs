@@ -2,9 +2,9 @@
 //!
 //! Every model counts its paint by slot, so a conversion moves no volume: each cell keeps the quanta of each of its layers,
 //! and its thinner. Only the colours differ. Kubelka-Munk films mix yellow and blue to green, volumes to grey
-//! ([`Colouring`](maulstick_appearance::colouring::Colouring)); a thick dark glaze is nearly black as a film and has its tint as a volume. So
-//! the paints of each layer are chosen anew, from the bottom up: those of the same volume that are nearest in ΔE₀₀ to what
-//! was seen of the layer over all below it.
+//! ([`Colouring`](maulstick_appearance::colouring::Colouring)); a thick dark glaze is nearly black as a film and has its
+//! tint as a volume. So the paints of each layer are chosen anew, from the bottom up: those of the same volume that are
+//! nearest in ΔE₀₀ to what was seen of the layer over all below it.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -21,10 +21,11 @@
 //!
 //! ```
 //! use maulstick_appearance::Appearance;
+//! use maulstick_appearance::colouring::Colouring;
 //! use maulstick_canvas::planes::TILE_CELLS;
 //! use maulstick_canvas::quantum::QUANTUM_M;
 //! use maulstick_canvas::tile::Tile;
-//! use maulstick_convert::{Colouring, Converter, TileGround};
+//! use maulstick_convert::{Converter, TileGround};
 //! use maulstick_optics::{PaintLibrary, Studio, Under};
 //!
 //! # fn main() -> Result<(), maulstick_optics::PaintError> {
