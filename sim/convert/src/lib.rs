@@ -26,6 +26,7 @@
 //! use maulstick_canvas::quantum::QUANTUM_M;
 //! use maulstick_canvas::tile::Tile;
 //! use maulstick_convert::{Converter, TileGround};
+//! use maulstick_dab::layers::VOLUMES;
 //! use maulstick_optics::{PaintLibrary, Studio, Under};
 //!
 //! # fn main() -> Result<(), maulstick_optics::PaintError> {
@@ -42,7 +43,7 @@
 //!
 //! let look = Appearance::new(studio);
 //! let ground = TileGround { under: Under::Even(&white), stays: &[] };
-//! let converted = Converter::new(&look, Colouring::Films, Colouring::Volumes).tile(&tile, ground);
+//! let converted = Converter::new(&look, Colouring::Films, Colouring::Volumes(&VOLUMES)).tile(&tile, ground);
 //! let slots: Vec<usize> = converted.wet.iter().map(|(slot, _)| *slot).collect();
 //! println!("{slots:?}, ΔE₀₀ {:.2} in the mean", converted.distance.mean());
 //! assert!(converted.distance.mean() < 5.0, "the green of the films is met");
