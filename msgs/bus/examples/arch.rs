@@ -6,7 +6,6 @@
 //! ```
 
 use std::error::Error;
-use std::thread::sleep;
 use std::time::Duration;
 
 use maulstick_bus::credit::Stamp;
@@ -76,7 +75,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         };
         samples.send(Flags::NONE, stamp, &sample)?;
         samples.serve(now_ns)?;
-        sleep(INTERVAL);
+        // A device's daemon waits here for its hardware, which keeps the time.
+        std::thread::sleep(INTERVAL);
     }
     bus.close();
     Ok(())

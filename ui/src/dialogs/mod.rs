@@ -8,7 +8,7 @@
 //! | `close` | asks before the window closes on a painting without a name |
 //! | `sketch_offer` | the sketches of before |
 //! | `dropped` | files dropped on the window |
-//! | `painting_file` | folder and name that they propose |
+//! | `painting_file` | folder and name that they propose, what a command has done with it |
 //! | `save_status` | line at the lower edge |
 
 mod browser;
@@ -52,13 +52,9 @@ use new::NewPainting;
 use open::OpenPainting;
 use open::discard_prompt::UnsavedState;
 use open::recent::RecentList;
-use painting_file::{folder, stem};
+use painting_file::{done, folder, stem, switches};
 use save_as::SaveAs;
 use sketch_offer::{Choice, SketchOffer};
-
-/// The launcher, as a node.
-#[cfg(test)]
-pub(crate) use maulstick_types::command::RIG_NODE as RIG;
 
 /// A dialog that is open.
 #[derive(Debug)]
@@ -462,41 +458,6 @@ fn ask(command: Command, work: &mut PanelContext<'_>) -> Request {
     work.rig.switching |= switches(&command);
     work.requests.send(command.clone());
     Request::of(command)
-}
-
-/// True for a command that opens another painting, for which nodes are restarted.
-fn switches(command: &Command) -> bool {
-    matches!(
-        command,
-        Command::Rig(RigCommand::Open { .. } | RigCommand::New { .. } | RigCommand::SaveAs(_))
-    )
-}
-
-/// Result of a file command in words; `None` for any other command.
-fn done(command: &Command) -> Option<String> {
-    let file = |path: &str| paths::shown(Path::new(path));
-    Some(match command {
-        Command::Rig(RigCommand::Open { path, .. }) => tr!("Opened {file}.", file = file(path)),
-        Command::Rig(RigCommand::New { path, .. }) => match path {
-            Some(path) => tr!("A new painting, kept in {file}.", file = file(path)),
-            None => tr!("A new sketch, without a name for now.").to_owned(),
-        },
-        Command::Rig(RigCommand::SaveAs(save_as)) | Command::File(FileCommand::SaveAs(save_as)) => {
-            tr!("The painting is in {file} now.", file = file(&save_as.path))
-        }
-        Command::File(FileCommand::Export(order)) => {
-            tr!("Exported to {file}.", file = file(&order.path))
-        }
-        Command::File(FileCommand::StopExport) => {
-            tr!("The export has ended without a file.").to_owned()
-        }
-        Command::Rig(RigCommand::PutDevice { .. } | RigCommand::RemoveDevice { .. })
-        | Command::File(FileCommand::Copy { .. })
-        | Command::Edit(_)
-        | Command::Take(_)
-        | Command::Brush(_)
-        | Command::Session(_) => return None,
-    })
 }
 
 #[cfg(test)]

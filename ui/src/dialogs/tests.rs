@@ -3,9 +3,9 @@ use egui_kittest::kittest::Queryable as _;
 use maulstick_brush::BrushFile;
 use maulstick_painting::edits::Undo;
 use maulstick_rig::UserError;
-use maulstick_types::command::PAINT_NODE as PAINT;
 use maulstick_types::command::{Detail, ExportOrder, NewCanvas};
 use maulstick_types::command::{FileCommand, RigCommand, SaveAs};
+use maulstick_types::command::{PAINT_NODE as PAINT, RIG_NODE as RIG};
 use maulstick_types::paint::ExportStatus;
 use maulstick_types::values::WholePath;
 
