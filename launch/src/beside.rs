@@ -133,6 +133,17 @@ impl BesideCommand {
         format!("cargo build --release -p {}", self.package)
     }
 
+    /// How it comes to lie beside one that is installed.
+    fn how_to_install(&self) -> String {
+        let name = self.package.trim_start_matches("maulstick-");
+        let parent = if self.package == BENCH {
+            "tests"
+        } else {
+            "tools"
+        };
+        format!("cargo install --path {parent}/{name}")
+    }
+
     /// Definition for help and completions: it takes whatever the program takes.
     fn definition(&self) -> clap::Command {
         let name = self.path.last().copied().unwrap_or_default();
@@ -185,8 +196,18 @@ pub fn run_given(matches: &ArgMatches) -> Result<(), UserError> {
         .args(overwrite)
         .args(line)
         .exec();
-    let what = format!("`{}` cannot be started: {error}", command.typed());
-    Err(UserError::failure(what).help(format!("build it: {}", command.how_to_build())))
+    let typed = command.typed();
+    Err(if error.kind() == std::io::ErrorKind::NotFound {
+        let (build, install) = (command.how_to_build(), command.how_to_install());
+        UserError::failure(format!(
+            "`{typed}` is a program of its own, which is not built"
+        ))
+        .help(format!(
+            "in the folder of the sources: {build}; where maulstick is installed: {install}"
+        ))
+    } else {
+        UserError::failure(format!("`{typed}` cannot be started: {error}"))
+    })
 }
 
 /// Runs the program of somebody else for a command that is unknown here; otherwise ends this one with the error.
@@ -220,7 +241,12 @@ fn beside(name: &str) -> Result<PathBuf, UserError> {
 
 /// Command line of a program in `tools/`.
 #[derive(Parser, Debug)]
-#[command(name = "maulstick", version, max_term_width = 100)]
+#[command(
+    name = "maulstick",
+    bin_name = "maulstick",
+    version,
+    max_term_width = 100
+)]
 struct ToolLine<C: Subcommand> {
     #[command(subcommand)]
     command: C,

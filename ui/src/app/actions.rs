@@ -132,13 +132,8 @@ impl App {
         let Some(view) = &self.desk.view else {
             return;
         };
-        let surfaces = self
-            .studio
-            .rig
-            .live
-            .scene
-            .as_ref()
-            .map(|scene| &scene.surfaces[..]);
+        let scene = self.studio.rig.live.scene.as_ref();
+        let surfaces = scene.map(|scene| &scene.surfaces[..]);
         let around = Around {
             view,
             surfaces: surfaces.unwrap_or_default(),

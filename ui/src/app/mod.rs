@@ -292,6 +292,7 @@ impl eframe::App for App {
     }
 
     fn on_exit(&mut self) {
+        self.sending.end();
         self.hands.pen.end();
         self.connection.stop.request();
         self.connection.wake.ring();

@@ -48,6 +48,11 @@ impl Sending {
         })
     }
 
+    /// Ends recording and replay, while the window is still in the rig.
+    pub(super) fn end(&mut self) {
+        self.sessions.end();
+    }
+
     /// Reads how far the strokes are painted.
     pub(super) fn drain(&mut self, now_ns: u64) {
         self.barrier.drain(now_ns);

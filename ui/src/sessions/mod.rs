@@ -16,11 +16,14 @@ pub(crate) mod tests;
 pub(crate) mod transport_bar;
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use eframe::egui::Context;
 use maulstick_recorder::{Order, Player, Recorder, ReplaySettings, TakePlace};
+use maulstick_rig::UserError;
 use maulstick_ui_kit::notifications::Notifications;
 use tokio::runtime::{Builder, Runtime};
+use tokio::time::timeout;
 
 use crate::rig::state::RigState;
 
@@ -30,6 +33,8 @@ pub(crate) const RECORDING: &str = "mcap";
 const MOTION: &str = "motion";
 /// Threads of recorder and player.
 const THREADS: usize = 2;
+/// Longest wait for the end of a recording or a replay when the window ends.
+const LONGEST_END: Duration = Duration::from_millis(400);
 
 /// A request to recorder or player.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,7 +84,7 @@ impl Sessions {
         for order in orders {
             if let Err(error) = self.carry_out(order, rig) {
                 notifications.fault(
-                    tr!("maulstick cannot be started: {error}", error),
+                    tr!("Recorder and player cannot be started: {error}", error),
                     tr!("Start the rig again."),
                 );
             }
@@ -132,6 +137,25 @@ impl Sessions {
         Ok(())
     }
 
+    /// Ends both: the file gets its index, without which it would have to be salvaged, and hands that play are lifted.
+    pub(crate) fn end(&mut self) {
+        let Some(runtime) = self.runtime.take() else {
+            return;
+        };
+        let (recorder, player) = (self.recorder.take(), self.player.take());
+        recorder.iter().for_each(Recorder::stop_now);
+        player.iter().for_each(Player::stop);
+        runtime.block_on(async {
+            if let Some(recorder) = recorder {
+                ended("recording", recorder.ended()).await;
+            }
+            if let Some(player) = player {
+                ended("replay", player.ended()).await;
+            }
+        });
+        runtime.shutdown_background();
+    }
+
     fn runtime(&mut self) -> std::io::Result<&Runtime> {
         let runtime = match self.runtime.take() {
             Some(runtime) => runtime,
@@ -147,17 +171,16 @@ impl Sessions {
 
 impl Drop for Sessions {
     fn drop(&mut self) {
-        let Some(runtime) = self.runtime.take() else {
-            return;
-        };
-        // A file without its index would have to be salvaged.
-        if let Some(recorder) = self.recorder.take() {
-            recorder.stop();
-            if let Err(fault) = runtime.block_on(recorder.ended()) {
-                tracing::warn!("the recording: {}", fault.what);
-            }
-        }
-        runtime.shutdown_background();
+        self.end();
+    }
+}
+
+/// Waits for an end, not longer than the launcher does.
+async fn ended(what: &str, end: impl Future<Output = Result<(), UserError>>) {
+    match timeout(LONGEST_END, end).await {
+        Ok(Ok(())) => {}
+        Ok(Err(fault)) => tracing::warn!("the {what}: {}", fault.what),
+        Err(_) => tracing::warn!("the {what} does not end"),
     }
 }
 

@@ -41,6 +41,11 @@ pub(super) fn poll(
 ) -> bool {
     let result = recorder.result();
     while let Ok(event) = recorder.events.try_recv() {
+        if let (RecorderEvent::Continued { file, .. }, Some(recording)) =
+            (&event, &mut rig.recording)
+        {
+            file.clone_into(&mut recording.file);
+        }
         notify(&event, notifications);
     }
     let Some(result) = result else {

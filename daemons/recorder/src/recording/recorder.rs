@@ -1,8 +1,11 @@
 //! The handle of a recorder at work.
 
+use std::sync::Arc;
+
 use maulstick_rig::UserError;
 use maulstick_rig::pulse::Pulse;
 use tokio::runtime::Handle;
+use tokio::sync::Notify;
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
 use super::event::RecorderEvent;
@@ -18,6 +21,8 @@ pub struct Recorder {
     /// What happens to the recording.
     pub events: UnboundedReceiver<RecorderEvent>,
     work: Work,
+    /// Ends the wait for a copy of the painting.
+    hurry: Arc<Notify>,
 }
 
 impl Recorder {
@@ -26,14 +31,19 @@ impl Recorder {
     pub fn start(runtime: &Handle, rig: &str, settings: RecorderSettings, ring: Ring) -> Self {
         let (request, rig) = (StopRequest::default(), rig.to_owned());
         let (to_owner, events) = unbounded_channel();
-        let stopped = request.clone();
+        let (stopped, hurry) = (request.clone(), Arc::default());
+        let hurried = Arc::clone(&hurry);
         let work = async move {
             let member = stopped.join(&rig, "listener")?;
             let listener = Listener::over(member, &settings.topic)?;
-            Recording::record(settings, ring, listener, None, to_owner).await
+            Recording::record((settings, hurried), ring, listener, None, to_owner).await
         };
         let work = Work::begin(runtime, request, work);
-        Self { events, work }
+        Self {
+            events,
+            work,
+            hurry,
+        }
     }
 
     /// Records as a member of a rig, whose stop flag stops it; `pulse` tells the launcher that it goes on.
@@ -50,14 +60,26 @@ impl Recorder {
             stop: listener.member.stop.clone(),
             wake: listener.member.wake.clone(),
         };
+        let hurry = Arc::default();
+        let settings = (settings, Arc::clone(&hurry));
         let work = Recording::record(settings, ring, listener, Some(pulse), to_owner);
         let work = Work::begin(runtime, request, work);
-        Self { events, work }
+        Self {
+            events,
+            work,
+            hurry,
+        }
     }
 
     /// Asks it to stop: the file is finished.
     pub fn stop(&self) {
         self.work.stop();
+    }
+
+    /// Asks it to stop without the painting, if its copy is not there yet: for a process that ends.
+    pub fn stop_now(&self) {
+        self.hurry.notify_one();
+        self.stop();
     }
 
     /// Its result, once it has ended; then its last events are there too. `None` afterwards.

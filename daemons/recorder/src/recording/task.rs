@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Duration;
 
 use maulstick_rig::UserError;
@@ -11,6 +12,7 @@ use maulstick_rig::pulse::Pulse;
 use maulstick_streams::Traffic;
 use maulstick_streams::topic_pattern::matches;
 use maulstick_types::node::NodeStatus;
+use tokio::sync::Notify;
 use tokio::sync::mpsc::UnboundedSender;
 use tokio::time::{Instant, MissedTickBehavior, interval, interval_at, sleep};
 
@@ -33,6 +35,8 @@ const SHORTEST: Duration = Duration::from_secs(1);
 /// A recording in progress.
 pub(super) struct Recording {
     settings: RecorderSettings,
+    /// Ends the wait for a copy of the painting.
+    hurry: Arc<Notify>,
     listener: Listener,
     pulse: Option<Pulse>,
     events: UnboundedSender<RecorderEvent>,
@@ -52,7 +56,7 @@ impl Recording {
     /// # Errors
     /// A [`UserError`] where a file cannot be written: what was written until then can be read.
     pub(super) async fn record(
-        settings: RecorderSettings,
+        (settings, hurry): (RecorderSettings, Arc<Notify>),
         ring: Ring,
         listener: Listener,
         pulse: Option<Pulse>,
@@ -63,6 +67,7 @@ impl Recording {
         let mut recording = Self {
             state: State::new(paints, &listener),
             settings,
+            hurry,
             listener,
             pulse,
             events,
@@ -221,13 +226,14 @@ impl Recording {
         }
         if self.copy.as_ref().is_some_and(PaintingCopy::is_made) {
             let copied = tokio::select! {
-                copied = PaintingCopy::made(&mut self.copy) => copied.ok(),
+                copied = PaintingCopy::made(&mut self.copy) => Some(copied),
                 // A rig that ends copies nothing any more.
                 () = self.listener.rig_gone() => None,
+                () = self.hurry.notified() => None,
                 () = sleep(self.settings.longest_wait) => None,
             };
-            if let Some(painting) = copied {
-                self.part.attach(&painting)?;
+            if let Some(copied) = copied {
+                self.attach(copied)?;
             }
         }
         self.end_file(None)

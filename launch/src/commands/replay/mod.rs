@@ -165,13 +165,13 @@ pub fn run(options: &ReplayOptions) -> Result<i32, UserError> {
         let mut signals = EndSignals::watch()?;
         let mut player = Player::start(&Handle::current(), options.target.rig(), settings);
         let (mut orders, mut reports) = (Orders::new(options.json), Reports::new(options.json));
-        let mut code = 0;
+        let (mut code, mut shown) = (0, Ok(()));
         loop {
             tokio::select! {
                 report = player.events.recv() => match report {
                     Some(report) => {
                         orders.listen(&report);
-                        reports.show(&report, orders.are_keys())?;
+                        shown = shown.and_then(|()| reports.show(&report, orders.are_keys()));
                     }
                     None => break,
                 },
@@ -181,9 +181,14 @@ pub fn run(options: &ReplayOptions) -> Result<i32, UserError> {
                     player.stop();
                 }
             }
+            // Nobody reads on: the player lifts its hands and leaves.
+            if shown.is_err() {
+                player.stop();
+            }
         }
         drop(orders);
         let ended = player.ended().await;
+        shown?;
         reports.end(ended.is_ok())?;
         ended.map(|()| code)
     })

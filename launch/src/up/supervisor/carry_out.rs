@@ -4,7 +4,6 @@ use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use maulstick_rig::UserError;
-use maulstick_types::command::Outcome;
 
 use super::Supervisor;
 use super::crew::{Action, Exit};
@@ -242,10 +241,7 @@ impl Supervisor {
                 self.carry_out(actions, now)?;
             }
             SwitchAction::SavedAs(path) => self.settings.is_saved_as(&path),
-            SwitchAction::Reply((client, number), outcome) => {
-                let outcome: Outcome = outcome;
-                self.orders.replies.keep(client, number, outcome);
-            }
+            SwitchAction::Reply(asker, outcome) => self.orders.commands.keep(asker, outcome),
         }
         Ok(None)
     }

@@ -3,26 +3,25 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use maulstick_bus::typed::{Reader, Receiver, random_epoch};
-use maulstick_bus::{Bus, BusError, Qos, Queue, Request, Server, Wake};
+use maulstick_bus::typed::{CommandServer, Receiver, random_epoch};
+use maulstick_bus::{Bus, BusError, Qos, Queue, Request, Wake};
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_types::command::advice::Advice;
-use maulstick_types::command::reply_cache::ReplyCache;
 use maulstick_types::command::{
     Command, CommandReply, CommandRequest, Outcome, RIG_NODE, RigCommand,
 };
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::wire::topics::Topics;
-use maulstick_types::{Flags, Origin, encode, name_hash};
+use maulstick_types::{Origin, name_hash};
 
 use crate::up::plan::Hands;
 
+/// Requests that wait, at most.
+const QUEUED: usize = 64;
+
 /// Requests to the rig, and its replies.
 pub(super) struct Orders {
-    server: Server,
-    reader: Reader,
-    me: Origin,
-    pub(super) replies: ReplyCache,
+    pub(super) commands: CommandServer,
     statuses: Receiver<PaintStatus>,
     status: Option<PaintStatus>,
     /// Time of that status, rig clock, ns.
@@ -48,14 +47,12 @@ impl Orders {
     /// [`BusError::Topic`].
     pub(super) fn new(bus: &dyn Bus, topics: &Topics, wake: &Wake) -> Result<Self, BusError> {
         let topic = topics.paint_status();
+        let me = Origin {
+            source: name_hash(RIG_NODE),
+            epoch: random_epoch(),
+        };
         Ok(Self {
-            server: bus.serve(&topics.command(RIG_NODE), 64, wake)?,
-            reader: Reader::default(),
-            me: Origin {
-                source: name_hash(RIG_NODE),
-                epoch: random_epoch(),
-            },
-            replies: ReplyCache::default(),
+            commands: CommandServer::new(bus, &topics.command(RIG_NODE), QUEUED, me, wake)?,
             statuses: Receiver::new(bus, &topic, Qos::Background, Queue::Ring(4), wake)?,
             status: None,
             status_ns: 0,
@@ -66,35 +63,13 @@ impl Orders {
     /// The next request that is none of those answered before.
     pub(super) fn next(&mut self, bus: &dyn Bus) -> Option<(Request, CommandRequest)> {
         loop {
-            let request = self.server.try_recv()?;
-            let asked = match self.reader.read_command(&request.key, &request.bytes) {
-                Ok(asked) => asked,
-                Err(reply) => {
-                    if let Some(reply) = reply {
-                        self.answer(bus, request, &reply);
-                    }
-                    continue;
-                }
+            let (request, asked) = self.commands.next(bus)?;
+            let Some(outcome) = self.commands.find(&asked) else {
+                return Some((request, asked));
             };
-            match self.replies.find(&asked) {
-                None => return Some((request, asked)),
-                Some(outcome) => {
-                    let number = asked.number;
-                    self.answer(bus, request, &CommandReply { number, outcome });
-                }
-            }
-        }
-    }
-
-    pub(super) fn answer(&self, bus: &dyn Bus, request: Request, reply: &CommandReply) {
-        let now_ns = bus.now_ns();
-        match encode(&self.me, Flags::NONE, 0, now_ns, now_ns, reply) {
-            Ok(bytes) => {
-                if let Err(error) = request.answer(bytes) {
-                    tracing::debug!("a client is gone: {error}");
-                }
-            }
-            Err(error) => tracing::error!("a command cannot be answered: {error}"),
+            let number = asked.number;
+            self.commands
+                .answer(bus, request, &CommandReply { number, outcome });
         }
     }
 

@@ -31,13 +31,14 @@ impl Supervisor {
                 let outcome = self.order(&asked, now).unwrap_or_else(refusal);
                 // The rig itself says when a switch is done; a removal is looked at each time.
                 if self.switch.is_busy() || outcome != Outcome::Waiting {
-                    let replies = &mut self.orders.replies;
-                    replies.keep(asked.client, asked.number, outcome.clone());
+                    let asker = (asked.client, asked.number);
+                    self.orders.commands.keep(asker, outcome.clone());
                 }
                 outcome
             };
             let number = asked.number;
             self.orders
+                .commands
                 .answer(&*bus, request, &CommandReply { number, outcome });
         }
     }

@@ -68,7 +68,7 @@ wire_enum! {
         Beginning,
         /// A stroke that was dropped before it was painted.
         Unpainted,
-        /// A step that only another version knows.
+        /// A step that its edit alone names, or that only another version knows.
         Words {
             /// Its words.
             words: String,

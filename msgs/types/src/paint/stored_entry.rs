@@ -7,6 +7,10 @@ use crate::wire::codec::{Message as _, decode};
 use crate::wire::field_table::{FieldTable, TableError};
 use crate::wire::header::{DecodeError, HEADER_BYTES, Header};
 
+/// The table of the present version.
+static PRESENT: LazyLock<Result<FieldTable, TableError>> =
+    LazyLock::new(|| FieldTable::of(JournalEntry::schema()));
+
 /// Tables of version 12, whose edits are an enum, and of version 11, whose decisions are words as well.
 static EARLIER: LazyLock<[Result<FieldTable, TableError>; 2]> = LazyLock::new(|| {
     [
@@ -47,5 +51,6 @@ impl JournalEntry {
 
 fn translated(table: &FieldTable, body: &[u8]) -> Result<Vec<u8>, TableError> {
     let value = table.decode(body)?;
-    FieldTable::of(JournalEntry::schema())?.encode(&value)
+    let present = PRESENT.as_ref().map_err(Clone::clone)?;
+    present.encode(&value)
 }

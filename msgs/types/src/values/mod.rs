@@ -26,7 +26,7 @@ use crate::limits::FARTHEST_M;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ValueError {
     /// A number out of its range, in a painter's units.
-    #[error("a {what} of {value}{unit} is out of range: choose {range}{unit}")]
+    #[error("{what} {value}{unit} is out of range: choose {range}{unit}")]
     Range {
         /// The quantity.
         what: &'static str,
@@ -38,7 +38,7 @@ pub enum ValueError {
         range: &'static str,
     },
     /// A text that is too long.
-    #[error("a {what} of {bytes} bytes is too long: it has at most {most}")]
+    #[error("{what} of {bytes} bytes is too long: it has at most {most}")]
     Length {
         /// Its purpose.
         what: &'static str,
@@ -48,7 +48,7 @@ pub enum ValueError {
         most: usize,
     },
     /// A text that is no number.
-    #[error("a {what} is a number, not '{text}'")]
+    #[error("{what} must be a number, not '{text}'")]
     NoNumber {
         /// The quantity.
         what: &'static str,
@@ -56,7 +56,7 @@ pub enum ValueError {
         text: String,
     },
     /// A blank name, or one with control characters.
-    #[error("a {what} must not be blank or contain line breaks")]
+    #[error("{what} must not be blank or contain line breaks")]
     Unreadable {
         /// Its purpose.
         what: &'static str,

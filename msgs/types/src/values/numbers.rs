@@ -210,10 +210,7 @@ mod tests {
             assert!(error.contains("µm") || error.contains("number"), "{error}");
         }
         let error = Share::new(0.0).expect_err("nothing dries").to_string();
-        assert_eq!(
-            error,
-            "a share of 0 is out of range: choose above 0, at most 1"
-        );
+        assert_eq!(error, "share 0 is out of range: choose above 0, at most 1");
         assert!(Share::new(f32::NAN).is_err() && Share::new(1.0).is_ok());
         assert_eq!(
             FilmThickness::USUAL,

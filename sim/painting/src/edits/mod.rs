@@ -33,8 +33,8 @@ pub use surface::{
 use std::fmt::Debug;
 
 use maulstick_canvas::EditError;
-use maulstick_types::Mixture;
 use maulstick_types::values::{BrushName, ValueError};
+use maulstick_types::{Edit, Mixture};
 
 use crate::painting::Painting;
 
@@ -49,6 +49,16 @@ macro_rules! for_each_edit {
             Undo, Redo, Keep, ReturnTo, Branch, Forget, GoTo
         }
     };
+}
+
+impl Painting {
+    /// Applies an edit.
+    ///
+    /// # Errors
+    /// [`EditError`] says why it is refused; then the painting is as it was.
+    pub fn apply(&mut self, edit: impl Into<Edit>) -> Result<Applied, EditError> {
+        read(&edit.into())?.apply(self)
+    }
 }
 
 /// An edit as the painting carries it out.

@@ -28,12 +28,10 @@ use maulstick_canvas::assets::Assets;
 use maulstick_canvas::page::Pager;
 use maulstick_canvas::store::TileStore;
 use maulstick_optics::PaintLibrary;
-use maulstick_types::Edit;
 use maulstick_types::scene::Scene;
 
 use crate::brush_colour::Carried;
 use crate::clock::Clock;
-use crate::edits::{self, Applied};
 use crate::history::History;
 use crate::setup::PaintingSetup;
 use accounts::Accounts;
@@ -96,14 +94,6 @@ impl Painting {
             painting.expose();
         }
         Ok(painting)
-    }
-
-    /// Applies an edit.
-    ///
-    /// # Errors
-    /// [`EditError`] says why it is refused; then the painting is as it was.
-    pub fn apply(&mut self, edit: impl Into<Edit>) -> Result<Applied, EditError> {
-        edits::read(&edit.into())?.apply(self)
     }
 
     /// The desk.

@@ -28,6 +28,16 @@ const DAMPING_N_S_M: f64 = 0.5;
 const MOST_N: f64 = 0.6;
 /// A brush that is higher above the canvas is let go, m.
 const NEAR_M: f64 = 0.03;
+
+/// A strength within 0 to 1; one that is not a number has no force.
+fn bounded(strength: f64) -> f64 {
+    if strength > 0.0 {
+        strength.min(1.0)
+    } else {
+        0.0
+    }
+}
+
 /// Guidance of one hand.
 pub(super) struct Guidance<'a> {
     member: &'a NodeHandle,
@@ -38,7 +48,7 @@ pub(super) struct Guidance<'a> {
     guides: Sender<GuideModel>,
     consent: Consent,
     controls: Controls,
-    pub(super) strength: f64,
+    strength: f64,
     paused: bool,
     /// When the next report is due.
     report: Instant,
@@ -56,6 +66,7 @@ impl<'a> Guidance<'a> {
     pub(super) fn new(
         member: &'a NodeHandle,
         (device, brush, traced): (Driven, Brush, Traced),
+        strength: f64,
         controls: Controls,
     ) -> Result<Self, UserError> {
         let (bus, topics) = (&*member.bus, &member.topics);
@@ -72,7 +83,7 @@ impl<'a> Guidance<'a> {
             brush,
             traced,
             controls,
-            strength: 0.0,
+            strength: bounded(strength),
             paused: false,
             report: Instant::now(),
         })
@@ -131,8 +142,8 @@ impl<'a> Guidance<'a> {
     fn obey(&mut self, order: Order) {
         match order {
             Order::Pause => self.paused = !self.paused,
-            Order::Strength(strength) => self.strength = strength,
-            Order::Stronger(by) => self.strength = (self.strength + by).clamp(0.0, 1.0),
+            Order::Strength(strength) => self.strength = bounded(strength),
+            Order::Stronger(by) => self.strength = bounded(self.strength + by),
             Order::Seek(s) => self.traced.seek((s.max(0.0) * 1e9) as u64),
             Order::Skip(by_s) => {
                 let s = self.traced.position_ns().unwrap_or(0) as f64 * 1e-9 + by_s;
@@ -175,5 +186,23 @@ impl<'a> Guidance<'a> {
             strength: self.strength,
             paused: self.paused,
         }));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bounded;
+
+    #[test]
+    fn no_strength_gives_more_than_the_full_force_of_a_guide() {
+        for (asked, given) in [
+            (0.5, 0.5),
+            (7.0, 1.0),
+            (-1.0, 0.0),
+            (f64::NAN, 0.0),
+            (f64::INFINITY, 1.0),
+        ] {
+            assert_eq!(bounded(asked), given, "{asked}");
+        }
     }
 }

@@ -143,8 +143,8 @@ async fn guide_as(
             .at(settings.place())
             .help("a stroke is longer than 2 mm; `maulstick recording info` shows what there is"));
     }
-    let mut guidance = Guidance::new(member, (driven, brush, traced), controls)?;
-    guidance.strength = own.strength;
+    let hand = (driven, brush, traced);
+    let mut guidance = Guidance::new(member, hand, own.strength, controls)?;
     guidance.guide(settings.repeats).await
 }
 

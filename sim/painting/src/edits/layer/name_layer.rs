@@ -7,7 +7,6 @@ use maulstick_types::values::{LayerName, ValueError};
 
 use crate::edits::{Applied, Form, LayerRef, PaintingEdit, StepForm};
 use crate::painting::Painting;
-use crate::painting::layers::place_of;
 
 /// Give a dry layer another name
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -37,7 +36,7 @@ impl Form for NameLayer {
 impl PaintingEdit for NameLayer {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let number = self.layer;
-        let place = place_of(&painting.scene, &LayerRef::Number { number })?;
+        let place = LayerRef::Number { number }.place_in(&painting.scene)?;
         painting.begin_step(StepName::LayerName, None);
         self.name
             .trim()

@@ -10,7 +10,7 @@ use maulstick_types::values::{LayerName, OpacityFactor, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
 use crate::painting::Painting;
-use crate::painting::layers::place_of;
+use maulstick_types::scene::Scene;
 
 /// A dry layer.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -44,6 +44,28 @@ impl fmt::Display for LayerRef {
             }
             Self::Named { name } => write!(f, "called '{name}'"),
         }
+    }
+}
+
+impl LayerRef {
+    /// Its place in a scene.
+    pub(crate) fn place_in(&self, scene: &Scene) -> Result<usize, EditError> {
+        let layers = &scene.layers;
+        let numbered = |number: u32| layers.iter().position(|layer| layer.number == number);
+        let found = match self {
+            Self::Number { number } => numbered(*number),
+            Self::Named { name } => layers
+                .iter()
+                .rposition(|layer| layer.name == name.as_str())
+                .or_else(|| numbered(name.parse().ok()?)),
+        };
+        found.ok_or_else(|| EditError::NoLayer {
+            which: self.to_string(),
+            known: layers
+                .iter()
+                .map(|layer| (layer.number, layer.name.clone()))
+                .collect(),
+        })
     }
 }
 
@@ -93,7 +115,7 @@ impl Form for Opacity {
 impl PaintingEdit for Opacity {
     /// Makes a dry layer more or less opaque: a factor on its optical thickness, never on its height.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let place = place_of(&painting.scene, &self.layer)?;
+        let place = self.layer.place_in(&painting.scene)?;
         painting.begin_step(StepName::LayerOpacity, None);
         painting.scene.layers[place].opacity = self.opacity.get();
         painting.layers_changed();

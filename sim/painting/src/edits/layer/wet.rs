@@ -1,5 +1,6 @@
 //! Makes dry layers wet again.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::num::NonZeroU32;
 use std::sync::Arc;
@@ -127,7 +128,7 @@ impl PaintingEdit for Wet {
         painting.clock.stop(Some(self.surface));
         painting.begin_step(StepName::Wet, None);
         painting.put_changed(on, tiles);
-        painting.drop_empty_layers(&numbers);
+        drop_empty_layers(painting, &numbers);
         painting.end_own_step();
         Ok(Applied::Rewet { layers, full_cells })
     }
@@ -144,6 +145,25 @@ impl PaintingEdit for Wet {
 
     fn reply(&self) -> Option<&'static str> {
         Some("wet again: ")
+    }
+}
+
+/// Removes those of `numbers` from the scene that are empty on every surface.
+fn drop_empty_layers(painting: &mut Painting, numbers: &BTreeSet<u32>) {
+    let mut gone = numbers.clone();
+    for (_, version) in painting.surfaces.iter().flat_map(|own| own.store.iter()) {
+        let stack = version.tile.as_ref().and_then(|tile| tile.dry());
+        let layers = stack.into_iter().flat_map(|stack| stack.layers());
+        layers.for_each(|layer| {
+            gone.remove(&layer.number);
+        });
+    }
+    if !gone.is_empty() {
+        painting
+            .scene
+            .layers
+            .retain(|layer| !gone.contains(&layer.number));
+        painting.layers_changed();
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use maulstick_canvas::EditError;
-use maulstick_canvas::dry::{DryLayer, DryStack};
+use maulstick_canvas::dry::{DRY_LAYERS_MOST, DryLayer, DryStack};
 use maulstick_canvas::own_plane::{OwnPlane, OwnShape};
 use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
@@ -55,9 +55,6 @@ impl PaintingEdit for Flip {
             });
         }
         painting.close_windows();
-        painting.clock.stop(Some(self.surface));
-        let words = "flip".to_owned();
-        painting.begin_step(StepName::Words { words }, None);
         let surface = &painting.surfaces[on];
         let mut mirror = Mirror::of(surface.store.cells()[0] as usize, &painting.surfaces.pager);
         let tile = |id: TileId| surface.store.version(id).tile.as_deref();
@@ -75,6 +72,18 @@ impl PaintingEdit for Flip {
                 }
             }
         }
+        let mut depths = tiles
+            .iter()
+            .filter_map(|(_, tile)| Some(tile.dry()?.depth()));
+        if depths.any(|depth| depth > DRY_LAYERS_MOST) {
+            return Err(EditError::Own {
+                what: "a tile of the flipped canvas would have more dry layers than it can hold",
+                help: "make layers wet and dry them as one first",
+            });
+        }
+        painting.clock.stop(Some(self.surface));
+        let words = "flip".to_owned();
+        painting.begin_step(StepName::Words { words }, None);
         painting.put_changed(on, tiles);
         painting.end_own_step();
         Ok(Applied::Done)

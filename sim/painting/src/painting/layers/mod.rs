@@ -1,10 +1,7 @@
 //! Drying, and edits of dry layers.
 
 mod drying;
-mod wetting;
 
-use crate::edits::LayerRef;
-use maulstick_canvas::EditError;
 use maulstick_types::scene::{Layer, Scene};
 
 use super::Painting;
@@ -61,24 +58,4 @@ impl Painting {
 /// Number of the next layer.
 pub(crate) fn next_layer(scene: &Scene) -> u32 {
     1 + scene.layers.last().map_or(0, |layer| layer.number)
-}
-
-/// Place of a dry layer in a scene.
-pub(crate) fn place_of(scene: &Scene, which: &LayerRef) -> Result<usize, EditError> {
-    let layers = &scene.layers;
-    let numbered = |number: u32| layers.iter().position(|layer| layer.number == number);
-    let found = match which {
-        LayerRef::Number { number } => numbered(*number),
-        LayerRef::Named { name } => layers
-            .iter()
-            .rposition(|layer| layer.name == name.as_str())
-            .or_else(|| numbered(name.parse().ok()?)),
-    };
-    found.ok_or_else(|| EditError::NoLayer {
-        which: which.to_string(),
-        known: layers
-            .iter()
-            .map(|layer| (layer.number, layer.name.clone()))
-            .collect(),
-    })
 }
