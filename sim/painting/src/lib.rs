@@ -6,7 +6,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`Painting`] | surfaces, brushes, what is done to them |
+//! | [`Painting`] | a clock and a workbench: the desk with its surfaces, brushes, backend, accounts, past |
 //! | [`sequencer`] | the order of states and commands |
 //! | [`setup`] | the scene of a new painting |
 //! | [`ledger`], [`history`] | the books, undo |
@@ -80,7 +80,8 @@
 //!   brushes and history.
 //! - Backend: processor, or a graphics device whose steps stay unsettled until somebody reads them; surfaces with wells
 //!   are the processor's.
-//! - An edit that takes or dries wet paint stops a drying (`clock.stop`), leaves the paint of wells
+//! - An edit reaches the parts that it changes: `bench` and `clock`. One that takes or dries wet paint stops a drying
+//!   (`clock.stop`), leaves the paint of wells
 //!   (`SurfaceState::staying`) and decides about planes of a model's own (`Planes::own`). One that moves paint has open
 //!   windows written back first; `begin_step` ends open steps.
 

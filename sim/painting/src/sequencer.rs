@@ -11,8 +11,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use maulstick_canvas::EditError;
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::reply_cache::ReplyCache;
-use maulstick_types::command::{Command, CommandRequest, Outcome, TakeCommand};
-use maulstick_types::paint::{Decision, Entry, JournalEntry};
+use maulstick_types::command::{Command, CommandRequest, Detail, Outcome, TakeCommand};
+use maulstick_types::paint::{Decision, Entry, JournalEntry, StepName};
 use maulstick_types::{Flags, Header, Mixture, Origin};
 
 use crate::edits::Applied;
@@ -30,6 +30,11 @@ pub enum Effect {
         ledger: Option<String>,
     },
 }
+
+/// Report of an undo of a stroke of which nothing was painted.
+const NOT_PAINTED: Detail = Detail::Step {
+    name: StepName::Unpainted,
+};
 
 /// A reply to the command `number` of `client`.
 #[derive(Clone, Debug, PartialEq)]

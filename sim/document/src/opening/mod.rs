@@ -140,7 +140,8 @@ impl Opened {
             embedded,
             ..
         } = self.restored;
-        let begun = beginning.map(|begun| begun.sequencer(embedded, self.library, self.pager));
+        let begun =
+            beginning.map(|begun| Sequencer::begun(begun, embedded, self.library, self.pager));
         begun.transpose()
     }
 

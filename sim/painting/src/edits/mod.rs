@@ -77,6 +77,16 @@ pub trait PaintingEdit: Debug {
         None
     }
 
+    /// True if it takes the newest step back. A stroke that still waits to be painted is dropped instead.
+    fn is_undo(&self) -> bool {
+        false
+    }
+
+    /// The edit that takes back the newest step of a brush alone, if this one may mean that.
+    fn undo_of(&self, _brush: &BrushName) -> Option<Edit> {
+        None
+    }
+
     /// The brush that a script's edit is for, which is the one in hand.
     fn brush_mut(&mut self) -> Option<&mut BrushName> {
         None

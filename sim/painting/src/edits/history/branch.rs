@@ -34,9 +34,9 @@ impl Form for Branch {
 
 impl PaintingEdit for Branch {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting
-            .branch(&self.from, &self.name)
-            .map(|()| Applied::Done)
+        let Painting { bench, clock } = painting;
+        bench.branch(clock, &self.from, &self.name)?;
+        Ok(Applied::Done)
     }
 
     fn log_words(&self) -> String {

@@ -30,7 +30,8 @@ impl Form for Forget {
 
 impl PaintingEdit for Forget {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.forget(&self.name).map(|()| Applied::Done)
+        painting.bench.forget(&self.name)?;
+        Ok(Applied::Done)
     }
 
     fn log_words(&self) -> String {

@@ -35,7 +35,8 @@ impl Form for Keep {
 
 impl PaintingEdit for Keep {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.keep(&self.name).map(|()| Applied::Done)
+        painting.bench.keep(&self.name)?;
+        Ok(Applied::Done)
     }
 
     fn log_words(&self) -> String {

@@ -35,7 +35,9 @@ impl Form for ReturnTo {
 
 impl PaintingEdit for ReturnTo {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.return_to(&self.name).map(|()| Applied::Done)
+        let Painting { bench, clock } = painting;
+        bench.return_to(clock, &self.name)?;
+        Ok(Applied::Done)
     }
 
     fn log_words(&self) -> String {

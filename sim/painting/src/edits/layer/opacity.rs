@@ -115,11 +115,12 @@ impl Form for Opacity {
 impl PaintingEdit for Opacity {
     /// Makes a dry layer more or less opaque: a factor on its optical thickness, never on its height.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let place = self.layer.place_in(&painting.scene)?;
-        painting.begin_step(StepName::LayerOpacity, None);
-        painting.scene.layers[place].opacity = self.opacity.get();
-        painting.layers_changed();
-        painting.end_own_step();
+        let bench = &mut painting.bench;
+        let place = self.layer.place_in(&bench.desk.scene)?;
+        bench.begin_step(StepName::LayerOpacity, None);
+        bench.desk.scene.layers[place].opacity = self.opacity.get();
+        bench.desk.layers_changed();
+        bench.end_own_step();
         Ok(Applied::Done)
     }
 

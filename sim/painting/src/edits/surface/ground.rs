@@ -93,8 +93,9 @@ impl Form for Ground {
 
 impl PaintingEdit for Ground {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let on = painting.surfaces.at(self.surface)?;
-        let assets = &mut painting.optics.assets;
+        let bench = &mut painting.bench;
+        let on = bench.desk.surfaces.at(self.surface)?;
+        let assets = &mut bench.desk.optics.assets;
         let ground = match &self.ground {
             GroundSource::Named { name } => name.to_string(),
             GroundSource::Spectrum { csv } => {
@@ -102,7 +103,7 @@ impl PaintingEdit for Ground {
             }
         };
         check_ground(&ground, assets)?;
-        painting.change_material(StepName::Ground, on, |material| material.ground = ground);
+        bench.change_material(StepName::Ground, on, |material| material.ground = ground);
         Ok(Applied::Done)
     }
 

@@ -71,7 +71,9 @@ impl Form for Piles {
 
 impl PaintingEdit for Piles {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.change_surface(self.surface, |own| own.piles_last = self.last)
+        let desk = &mut painting.bench.desk;
+        desk.change_surface(self.surface, |own| own.piles_last = self.last)?;
+        Ok(Applied::Done)
     }
 
     fn log_words(&self) -> String {

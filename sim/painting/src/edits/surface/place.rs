@@ -60,9 +60,11 @@ impl PaintingEdit for Place {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let zoom = self.zoom.get();
         Place::new(self.surface, self.pose.clone(), zoom)?;
-        painting.change_surface(self.surface, |own| {
+        let desk = &mut painting.bench.desk;
+        desk.change_surface(self.surface, |own| {
             (own.pose, own.zoom) = (self.pose.clone(), zoom);
-        })
+        })?;
+        Ok(Applied::Done)
     }
 
     fn log_words(&self) -> String {

@@ -206,9 +206,10 @@ impl PaintingEdit for Relight {
     /// Changes the light. If its spectrum, or its conversion to colour, changes, dry layers are baked anew on demand,
     /// tile by tile.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.relight(&self.light)?;
+        let desk = &mut painting.bench.desk;
+        desk.relight(&self.light)?;
         if self.expose {
-            painting.expose();
+            desk.expose();
         }
         Ok(Applied::Done)
     }

@@ -46,7 +46,9 @@ impl Form for Size {
 
 impl PaintingEdit for Size {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.change_surface(self.surface, |own| own.stain_m = self.stain.get())
+        let desk = &mut painting.bench.desk;
+        desk.change_surface(self.surface, |own| own.stain_m = self.stain.get())?;
+        Ok(Applied::Done)
     }
 
     fn log_words(&self) -> String {

@@ -17,7 +17,7 @@ use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 use maulstick_model::path::PathStepper;
 use maulstick_types::{Mixture, name_hash};
 
-use super::strokes::deferral::Deferral;
+use super::backend::deferral::Deferral;
 use crate::brush_colour::Carried;
 use handling::UnderBrush;
 
@@ -130,9 +130,10 @@ impl PaintingBrush {
             return;
         }
         let head = Arc::new(Head::of(&thinned));
-        let finer = match head.strips() > self.tidy.strips() {
-            true => &head,
-            false => &self.tidy,
+        let finer = if head.strips() > self.tidy.strips() {
+            &head
+        } else {
+            &self.tidy
         };
         self.load = Arc::new(self.load.onto(head.strips(), finer));
         (self.kept, self.thinned, self.tidy) = (None, thinned, head);

@@ -1,94 +1,83 @@
 //! Undo and redo.
 
-mod steps;
-pub(crate) mod versions;
-
 use maulstick_canvas::EditError;
 use maulstick_types::paint::StepName;
-use maulstick_types::scene::{Layer, Scene};
 
-use super::Painting;
-use crate::history::{Direction, History, OpenStep, Step, SurfaceMaterial, same};
+use super::Workbench;
+use crate::clock::Clock;
+use crate::history::{Direction, OpenStep, Step, materials, same};
 
-/// Materials of the surfaces of a scene.
-pub(crate) fn materials(scene: &Scene) -> Vec<SurfaceMaterial> {
-    let surfaces = scene.surfaces.iter();
-    surfaces
-        .map(|surface| SurfaceMaterial {
-            surface: surface.id,
-            ground: surface.ground.clone(),
-            tooth: surface.tooth.clone(),
-            tooth_seed: surface.tooth_seed,
-            wells: surface.wells.clone(),
-            model: surface.model.clone(),
-        })
-        .collect()
-}
-
-impl Painting {
+impl Workbench {
     /// Undoes the newest step, of a brush or of all, and returns its name.
     ///
     /// # Errors
     /// [`EditError`] if there is no step, or something was painted over it since: then nothing has changed.
-    pub fn undo(&mut self, brush: Option<&str>) -> Result<StepName, EditError> {
+    pub(crate) fn undo(
+        &mut self,
+        clock: &mut Clock,
+        brush: Option<&str>,
+    ) -> Result<StepName, EditError> {
         if let Some(brush) = brush {
             self.brushes.at(brush)?;
         }
         self.commit();
         let own = |step: &OpenStep| brush.is_none() || step.brush.as_deref() == brush;
         // Nothing lies over a step that is not finished.
-        if !self.history.open().any(own) {
-            let step = self
-                .history
-                .last_done(brush)
-                .ok_or_else(|| EditError::NothingToUndo(brush.map(str::to_owned)))?;
+        if !self.past.history.open().any(own) {
+            let step = self.past.history.last_done(brush);
+            let nothing = || EditError::NothingToUndo(brush.map(str::to_owned));
+            let step = step.ok_or_else(nothing)?;
             self.check(step, Direction::Undo)?;
         }
         self.end_step(|_| true);
-        Ok(match self.history.last_done(brush).cloned() {
-            Some(step) => self.walk(&step, Direction::Undo),
+        Ok(match self.past.history.last_done(brush).cloned() {
+            Some(step) => self.walk(clock, &step, Direction::Undo),
             None => StepName::Beginning,
         })
     }
 
     /// The newest step that is done; steps that end later have higher numbers.
-    pub fn newest_step(&mut self) -> u64 {
+    pub(crate) fn newest_step(&mut self) -> u64 {
         self.end_step(|_| true);
-        self.history.last_done(None).map_or(0, |step| step.id)
+        self.past.history.last_done(None).map_or(0, |step| step.id)
     }
 
     /// Takes back all steps of a brush that came after the one with this number.
     ///
     /// # Errors
     /// As [`undo`](Self::undo).
-    pub fn undo_to(&mut self, brush: &str, step: u64) -> Result<(), EditError> {
+    pub(crate) fn undo_to(
+        &mut self,
+        clock: &mut Clock,
+        brush: &str,
+        step: u64,
+    ) -> Result<(), EditError> {
         self.end_step(|_| true);
         let later = |own: &Step| own.id > step;
-        while self.history.last_done(Some(brush)).is_some_and(later) {
-            self.undo(Some(brush))?;
+        while self.past.history.last_done(Some(brush)).is_some_and(later) {
+            self.undo(clock, Some(brush))?;
         }
         Ok(())
-    }
-
-    /// Steps up to this one and later ones are never merged with each other.
-    pub fn part_history(&mut self, step: u64) {
-        self.history.part_at(step);
     }
 
     /// Does the newest undone step again, of a brush or of all, and says what it was.
     ///
     /// # Errors
     /// As [`undo`](Self::undo).
-    pub fn redo(&mut self, brush: Option<&str>) -> Result<StepName, EditError> {
+    pub(crate) fn redo(
+        &mut self,
+        clock: &mut Clock,
+        brush: Option<&str>,
+    ) -> Result<StepName, EditError> {
         if let Some(brush) = brush {
             self.brushes.at(brush)?;
         }
         self.commit();
-        let step = self.history.last_undone(brush).cloned();
+        let step = self.past.history.last_undone(brush).cloned();
         let step = step.ok_or(EditError::NothingToRedo)?;
         self.check(&step, Direction::Redo)?;
         self.end_step(|_| true);
-        Ok(self.walk(&step, Direction::Redo))
+        Ok(self.walk(clock, &step, Direction::Redo))
     }
 
     /// Undoes or redoes steps until the one of this number is the newest that is done, 0 for none, and returns its
@@ -96,35 +85,35 @@ impl Painting {
     ///
     /// # Errors
     /// [`EditError`] for an unknown step, and where something was painted over one on the way: then nothing has changed.
-    pub fn go_to(&mut self, step: u64) -> Result<StepName, EditError> {
-        let open = self.history.open().find(|open| open.id == step);
+    pub(crate) fn go_to(&mut self, clock: &mut Clock, step: u64) -> Result<StepName, EditError> {
+        let open = self.past.history.open().find(|open| open.id == step);
         if let Some(what) = open.map(|open| open.what.clone()) {
             // Of steps that are not finished none counts as newer.
             return Ok(what);
         }
-        let way = self.history.way_to(step).ok_or(EditError::NoStep)?;
+        let way = self.past.history.way_to(step).ok_or(EditError::NoStep)?;
         let way: Vec<Direction> = way.into_iter().map(|(way, _)| way).collect();
         let way: Vec<Direction> = match way.first() {
             Some(Direction::Redo) => way,
             _ => {
-                let open = self.history.open().map(|_| Direction::Undo);
+                let open = self.past.history.open().map(|_| Direction::Undo);
                 open.chain(way).collect()
             }
         };
         let mut gone = Vec::new();
         for way in way {
             let went = match way {
-                Direction::Undo => self.undo(None),
-                Direction::Redo => self.redo(None),
+                Direction::Undo => self.undo(clock, None),
+                Direction::Redo => self.redo(clock, None),
             };
             if let Err(error) = went {
                 // Back by the way that was just gone, which nothing lies over. No message describes what it leaves: dryings
                 // that were stopped, steps that were ended.
-                self.break_record();
+                self.past.record.is_broken = true;
                 for way in gone.into_iter().rev() {
                     drop(match way {
-                        Direction::Undo => self.redo(None),
-                        Direction::Redo => self.undo(None),
+                        Direction::Undo => self.redo(clock, None),
+                        Direction::Redo => self.undo(clock, None),
                     });
                 }
                 return Err(error);
@@ -132,9 +121,9 @@ impl Painting {
             gone.push(way);
         }
         if step > 0 {
-            self.record.go_to(step);
+            self.past.record.go_to(step);
         }
-        let newest = self.history.last_done(None);
+        let newest = self.past.history.last_done(None);
         Ok(newest.map_or(StepName::Beginning, |step| step.what.clone()))
     }
 
@@ -144,7 +133,7 @@ impl Painting {
         let effects = &step.effects;
         let mut tiles = step.tiles.iter();
         let over =
-            tiles.any(|(place, change)| !same(&self.surfaces.tile(*place), change.end(from)));
+            tiles.any(|(place, change)| !same(&self.desk.surfaces.tile(*place), change.end(from)));
         let mut loads = effects.loads.iter();
         // A brush that is gone is no hindrance.
         let other_load = loads.any(|(name, pages)| {
@@ -152,18 +141,18 @@ impl Painting {
             brush.is_some_and(|brush| !brush.carries(&pages[from]))
         });
         let (layers, made) = (effects.layers.as_ref(), effects.materials.as_ref());
-        let other_rest = layers.is_some_and(|ends| ends[from] != self.scene.layers)
-            || made.is_some_and(|ends| ends[from] != materials(&self.scene));
+        let other_rest = layers.is_some_and(|ends| ends[from] != self.desk.scene.layers)
+            || made.is_some_and(|ends| ends[from] != materials(&self.desk.scene));
         let other_books = !self.accounts.ledger.can_book(&effects.booked, way.times());
         // A later step may have led back to what this one left, as a return to a version does.
         let later = match way {
-            Direction::Undo => self.history.later_on(step),
+            Direction::Undo => self.past.history.later_on(step),
             Direction::Redo => None,
         };
         if later.is_none() && !over && !other_load && !other_rest && !other_books {
             return Ok(());
         }
-        let other = later.or_else(|| self.history.last_done(None));
+        let other = later.or_else(|| self.past.history.last_done(None));
         Err(EditError::Covered {
             what: step.what.clone(),
             over: other.map(|step| step.what.clone()),
@@ -171,14 +160,14 @@ impl Painting {
     }
 
     /// Takes a step back, or forth; it was checked.
-    fn walk(&mut self, step: &Step, way: Direction) -> StepName {
+    fn walk(&mut self, clock: &mut Clock, step: &Step, way: Direction) -> StepName {
         let to = way.ends()[1];
         let effects = &step.effects;
         // Time would do again what is taken back.
-        self.clock.stop(None);
-        self.record.turn(step);
+        clock.stop(None);
+        self.past.record.turn(step);
         for (place, change) in &*step.tiles {
-            self.surfaces.put(*place, change.end(to).clone());
+            self.desk.surfaces.put(*place, change.end(to).clone());
         }
         for (name, pages) in &effects.loads {
             if let Some(brush) = self.brushes.find_mut(name) {
@@ -187,11 +176,12 @@ impl Painting {
         }
         self.accounts.turn(&effects.booked, way.times());
         let (layers, made) = (effects.layers.as_ref(), effects.materials.as_ref());
-        self.turn_non_tile_state(layers.map(|ends| &ends[to]), made.map(|ends| &ends[to]));
+        let desk = &mut self.desk;
+        desk.restore(layers.map(|ends| &ends[to]), made.map(|ends| &ends[to]));
         self.turn_tops(step, way);
         match way {
-            Direction::Undo => self.history.undone(step.id),
-            Direction::Redo => self.history.redone(step.id),
+            Direction::Undo => self.past.history.undone(step.id),
+            Direction::Redo => self.past.history.redone(step.id),
         }
         step.what.clone()
     }
@@ -199,65 +189,23 @@ impl Painting {
     /// Restores the height of the paint where nothing else was painted meanwhile: then the same motion paints the same
     /// again.
     fn turn_tops(&mut self, step: &Step, way: Direction) {
-        let newest = self.history.last_done(None).map_or(0, |newest| newest.id);
+        let newest = self
+            .past
+            .history
+            .last_done(None)
+            .map_or(0, |newest| newest.id);
         let [before, after] = &step.effects.tops;
         let (from, to) = match way {
             Direction::Undo if step.id == newest => (after, before),
             Direction::Redo if step.id > newest => (before, after),
             _ => return,
         };
-        for surface in self.surfaces.iter_mut() {
+        for surface in self.desk.surfaces.iter_mut() {
             if from.get(&surface.id) == Some(&surface.top)
                 && let Some(top) = to.get(&surface.id)
             {
                 surface.top = *top;
             }
         }
-    }
-
-    /// Makes layers and surfaces what they are to be.
-    pub(crate) fn turn_non_tile_state(
-        &mut self,
-        layers: Option<&Vec<Layer>>,
-        materials: Option<&Vec<SurfaceMaterial>>,
-    ) {
-        if let Some(layers) = layers {
-            self.scene.layers.clone_from(layers);
-            self.layers_changed();
-        }
-        if let Some(materials) = materials {
-            self.set_materials(materials);
-        }
-    }
-
-    /// Numbers of steps that can be undone and redone.
-    #[must_use]
-    pub fn history_depth(&self) -> (usize, usize) {
-        self.history.depth()
-    }
-
-    /// The steps of the past.
-    #[must_use]
-    pub fn history(&self) -> &History {
-        &self.history
-    }
-
-    /// Forgets all steps: nothing of before can be undone.
-    pub fn forget_history(&mut self) {
-        self.end_step(|_| true);
-        self.history.forget();
-        self.break_record();
-    }
-
-    /// Merges the oldest steps until all pages take so many bytes in memory, or only the newest steps are apart: for a
-    /// painting whose new pages no document holds.
-    pub fn merge_history(&mut self, resident: usize) {
-        while self.bytes() > resident && self.history.merge_oldest() {}
-    }
-
-    /// Limit of the history, bytes; beyond that its oldest steps are merged.
-    pub fn set_quota(&mut self, bytes: u64) {
-        self.history.quota = bytes;
-        self.keep_to_quota();
     }
 }

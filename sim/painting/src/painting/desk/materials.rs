@@ -1,45 +1,31 @@
-//! Materials and places of the surfaces.
+//! Materials of the surfaces.
 
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_models::model_called;
-use maulstick_types::paint::StepName;
-use maulstick_types::scene::Surface;
+use maulstick_types::scene::Layer;
 
-use crate::edits::Applied;
+use super::Desk;
 use crate::history::SurfaceMaterial;
-use crate::painting::Painting;
-use crate::painting::undo::materials;
 
-impl Painting {
-    pub(crate) fn change_surface(
+impl Desk {
+    /// Makes layers and surfaces what they are to be; no window is open on these.
+    pub(crate) fn restore(
         &mut self,
-        id: u32,
-        change: impl FnOnce(&mut Surface),
-    ) -> Result<Applied, EditError> {
-        let on = self.surfaces.at(id)?;
-        change(&mut self.scene.surfaces[on]);
-        self.scene.version += 1;
-        Ok(Applied::Done)
-    }
-
-    pub(crate) fn change_material(
-        &mut self,
-        what: StepName,
-        on: usize,
-        change: impl FnOnce(&mut SurfaceMaterial),
+        layers: Option<&Vec<Layer>>,
+        materials: Option<&Vec<SurfaceMaterial>>,
     ) {
-        self.begin_step(what, None);
-        let mut materials = materials(&self.scene);
-        change(&mut materials[on]);
-        self.set_materials(&materials);
-        self.end_own_step();
+        if let Some(layers) = layers {
+            self.scene.layers.clone_from(layers);
+            self.layers_changed();
+        }
+        if let Some(materials) = materials {
+            self.set_materials(materials);
+        }
     }
 
-    /// Makes the surfaces of what they are to be made of.
+    /// Makes the surfaces of what they are to be made of; no window is open on them.
     pub(crate) fn set_materials(&mut self, materials: &[SurfaceMaterial]) {
-        self.close_windows();
         for material in materials {
             let Ok(on) = self.surfaces.at(material.surface) else {
                 continue;
@@ -47,9 +33,10 @@ impl Painting {
             let (surface, own) = (&mut self.scene.surfaces[on], &mut self.surfaces[on]);
             let tooth =
                 (&surface.tooth, surface.tooth_seed) != (&material.tooth, material.tooth_seed);
-            let model = match material.model.is_empty() {
-                true => own.model,
-                false => model_called(&material.model).unwrap_or(own.model),
+            let model = if material.model.is_empty() {
+                own.model
+            } else {
+                model_called(&material.model).unwrap_or(own.model)
             };
             let is_model = std::ptr::eq(model, own.model);
             let is_ground = surface.ground == material.ground;

@@ -11,8 +11,8 @@ use maulstick_model::path::PathStepper;
 use maulstick_types::brush::{Solve, solve_flags};
 use maulstick_types::scene::CANVAS;
 
-use super::deferral::Deferral;
-use crate::painting::Painting;
+use crate::painting::backend::deferral::Deferral;
+use crate::painting::bench::Workbench;
 use crate::painting::brushes::PaintingBrush;
 use crate::painting::surfaces::SurfaceState;
 
@@ -21,7 +21,7 @@ const DIP: f64 = 4.0;
 
 /// A brush on a surface, at one scale.
 pub(super) struct Stroke<'a> {
-    pub(super) painting: &'a mut Painting,
+    pub(super) bench: &'a mut Workbench,
     /// Index of the brush.
     pub(super) brush: usize,
     /// Index of the surface.
@@ -32,22 +32,24 @@ pub(super) struct Stroke<'a> {
 impl Stroke<'_> {
     /// The brush.
     pub(super) fn brush(&self) -> &PaintingBrush {
-        &self.painting.brushes[self.brush]
+        &self.bench.brushes[self.brush]
     }
 
     /// The brush.
     pub(super) fn brush_mut(&mut self) -> &mut PaintingBrush {
-        &mut self.painting.brushes[self.brush]
+        &mut self.bench.brushes[self.brush]
     }
 
     /// The surface.
     pub(super) fn surface(&self) -> &SurfaceState {
-        &self.painting.surfaces[self.surface]
+        &self.bench.desk.surfaces[self.surface]
     }
 
     /// True on a palette with wells.
     pub(super) fn has_wells(&self) -> bool {
-        !self.painting.scene.surfaces[self.surface].wells.is_empty()
+        !self.bench.desk.scene.surfaces[self.surface]
+            .wells
+            .is_empty()
     }
 
     /// Traits of the brush on the surface's cells.
@@ -73,7 +75,7 @@ impl Stroke<'_> {
             .path
             .take_if(|(on, path)| *on == surface && path.scale() == scale && !is_restarted);
         if running.is_none() {
-            self.painting.end_path(self.brush);
+            self.bench.end_path(self.brush);
             self.thin();
         }
         let waypoint = Waypoint::of(solve, scale, self.seen_fullness());
@@ -96,15 +98,15 @@ impl Stroke<'_> {
 
     /// Begins the stroke with this epoch and number: the bristles lie anew, unless the brush rested.
     fn begin(&mut self, stroke: (u32, u64), rested: bool) -> Result<(), EditError> {
-        self.painting.lift(self.brush);
+        self.bench.lift(self.brush);
         self.brush_mut().stroke = Some(stroke);
         if !rested {
-            self.painting.settle();
+            self.bench.settle();
             self.brush_mut().disorder();
         }
         self.thin();
-        self.painting.begin_stroke_step(self.brush);
-        self.painting.backend.facts.stroke_ends();
+        self.bench.begin_stroke_step(self.brush);
+        self.bench.backend.stroke_ends();
         self.load_next()
     }
 
@@ -118,10 +120,15 @@ impl Stroke<'_> {
             return Ok(());
         }
         let mixture = own.loads[number % own.loads.len()].clone();
-        let Painting { optics, scene, .. } = &mut *self.painting;
-        let slots = optics.slots(scene, &mixture)?;
-        self.painting
-            .fill(self.brush, &[(&slots, Half::Both)], seed);
+        let Workbench {
+            desk,
+            brushes,
+            accounts,
+            ..
+        } = &mut *self.bench;
+        let slots = desk.slots(&mixture)?;
+        let (parts, ledger) = ([(&slots[..], Half::Both)], &mut accounts.ledger);
+        brushes[self.brush].fill(&parts, desk, seed, ledger);
         Ok(())
     }
 
@@ -129,7 +136,7 @@ impl Stroke<'_> {
     /// as it is: its load would be merged and split at each dip.
     fn thin(&mut self) {
         if self.surface().id == CANVAS {
-            self.painting.settle();
+            self.bench.settle();
             let cell_m = self.scale.cell_m * self.scale.zoom;
             self.brush_mut().thin_for(cell_m);
         }

@@ -18,7 +18,7 @@ use maulstick_types::scene::{Surface, Well, WellKind};
 use super::cells::Cells;
 use super::stroke::Stroke;
 use crate::ledger::Ledger;
-use crate::painting::Painting;
+use crate::painting::bench::Workbench;
 
 /// A brush in a jar of medium soaks it up until it is this share of what it carries.
 const SOAK_LIMIT: f64 = 0.85;
@@ -71,7 +71,7 @@ fn is_in((pose, traits): (&HeadPose, &BrushTraits), well: &Well, cell_m: f64) ->
 impl Stroke<'_> {
     /// Refills the wells under the brush before it steps there.
     pub(super) fn refill_wells(&mut self, cells: Cells, pose: &HeadPose, traits: &BrushTraits) {
-        let described = &self.painting.scene.surfaces[self.surface];
+        let described = &self.bench.desk.scene.surfaces[self.surface];
         let cell_m = described.cell_m;
         for (place, well) in wells_near(described, cells) {
             let dips = || is_in((pose, traits), &well, cell_m);
@@ -86,9 +86,9 @@ impl Stroke<'_> {
                     continue;
                 }
             };
-            let Painting { optics, scene, .. } = &mut *self.painting;
+            let Workbench { desk, .. } = &mut *self.bench;
             // A paint without a slot: its well stays dry, and a command says why.
-            let Ok(slots) = optics.slots(scene, &mixture) else {
+            let Ok(slots) = desk.slots(&mixture) else {
                 continue;
             };
             let mut shares = [0.0; SLOTS];
@@ -108,9 +108,9 @@ impl Stroke<'_> {
 
     /// Soaks the brush in a jar of medium; shares of what it carries then, unless that is medium alone.
     fn soak(&mut self, thinner: usize) -> Option<[f64; SLOTS]> {
-        let Painting {
+        let Workbench {
             brushes, accounts, ..
-        } = &mut *self.painting;
+        } = &mut *self.bench;
         let load = Arc::make_mut(&mut brushes[self.brush].load);
         let washed = load.soak(thinner, SOAK_LIMIT, SOAK_RATE);
         let mut soaked = [0; SLOTS];
@@ -123,18 +123,22 @@ impl Stroke<'_> {
 
     /// Fills a well's cells to its height, with each slot's share.
     fn fill_well(&mut self, (place, well): (usize, &Well), cells: Cells, shares: &[f64; SLOTS]) {
-        let Painting {
-            scene,
-            surfaces,
+        let Workbench {
+            desk,
             brushes,
             accounts,
             ..
-        } = &mut *self.painting;
+        } = &mut *self.bench;
         let Some((_, window)) = &mut brushes[self.brush].window else {
             return;
         };
-        let cells = cells_within(window, well, scene.surfaces[self.surface].cell_m, cells);
-        let heap = surfaces[self.surface].bare.wells[place].heap();
+        let cells = cells_within(
+            window,
+            well,
+            desk.scene.surfaces[self.surface].cell_m,
+            cells,
+        );
+        let heap = desk.surfaces[self.surface].bare.wells[place].heap();
         let thick = thicknesses(window, &cells, heap);
         renew(window, &cells, (shares, &thick), &mut accounts.ledger);
         window.note_top(thick.iter().copied().fold(0.0, f64::max) as f32);
@@ -142,17 +146,22 @@ impl Stroke<'_> {
 
     /// Cleans the brush in a jar of cleaner.
     fn clean_in(&mut self, well: &Well, cells: Cells) {
-        let Painting {
-            scene,
+        let Workbench {
+            desk,
             brushes,
             accounts,
             ..
-        } = &mut *self.painting;
+        } = &mut *self.bench;
         let brush = &mut brushes[self.brush];
         let Some((_, window)) = &mut brush.window else {
             return;
         };
-        let cells = cells_within(window, well, scene.surfaces[self.surface].cell_m, cells);
+        let cells = cells_within(
+            window,
+            well,
+            desk.scene.surfaces[self.surface].cell_m,
+            cells,
+        );
         if !cells.is_empty() {
             renew(window, &cells, NOTHING, &mut accounts.ledger);
             let left = Arc::make_mut(&mut brush.load).take_all();
@@ -162,13 +171,13 @@ impl Stroke<'_> {
 
     /// Empties the jars of medium under the brush after its step.
     pub(super) fn empty_jars(&mut self, cells: Cells) {
-        let Painting {
-            scene,
+        let Workbench {
+            desk,
             brushes,
             accounts,
             ..
-        } = &mut *self.painting;
-        let described = &scene.surfaces[self.surface];
+        } = &mut *self.bench;
+        let described = &desk.scene.surfaces[self.surface];
         let Some((_, window)) = &mut brushes[self.brush].window else {
             return;
         };

@@ -1,30 +1,32 @@
 //! Strokes: states of a brush become steps of the paint model on windows of tiles.
 
-pub(crate) mod backend;
 mod cells;
-mod claims;
-pub(crate) mod deferral;
-mod models;
 mod relaxing;
 mod step;
 mod stroke;
+mod tiles;
+mod timing;
 mod wells;
-mod windows;
 
 use maulstick_canvas::EditError;
 use maulstick_model::brush::scale::Scale;
 use maulstick_model::path::PathStepper;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 
-use super::Painting;
+use super::Workbench;
 use stroke::Stroke;
 
-impl Painting {
+impl Workbench {
     /// Paints what a brush did in its epoch: strokes are numbered from 1 in each.
     ///
     /// # Errors
     /// [`EditError`] for an unknown brush, or a state that does not fit its brush file.
-    pub fn state(&mut self, brush: &str, epoch: u32, state: &BrushState) -> Result<(), EditError> {
+    pub(crate) fn state(
+        &mut self,
+        brush: &str,
+        epoch: u32,
+        state: &BrushState,
+    ) -> Result<(), EditError> {
         let brush = self.brushes.at(brush)?;
         let solved = state.solves.iter();
         let painted = solved.map(|solve| self.solve(brush, epoch, solve));
@@ -40,7 +42,7 @@ impl Painting {
             return Err(EditError::Unfit(own.name.clone()));
         }
         self.accounts.note_time(solve.event_ns);
-        let Ok(surface) = self.surfaces.at(solve.surface) else {
+        let Ok(surface) = self.desk.surfaces.at(solve.surface) else {
             return Ok(());
         };
         if solve.flags & solve_flags::PREVIEW != 0 {
@@ -48,15 +50,15 @@ impl Painting {
         }
         if solve.stroke == 0 {
             self.lift(brush);
-            self.backend.facts.stroke_ends();
+            self.backend.stroke_ends();
             return Ok(());
         }
         let stroke = Stroke {
             scale: Scale {
-                cell_m: self.surfaces[surface].cell_m,
+                cell_m: self.desk.surfaces[surface].cell_m,
                 zoom: solve.zoom,
             },
-            painting: self,
+            bench: self,
             brush,
             surface,
         };
@@ -82,7 +84,7 @@ impl Painting {
     fn take_path(&mut self, brush: usize) -> Option<(Stroke<'_>, PathStepper)> {
         let (surface, path) = self.brushes[brush].path.take()?;
         let stroke = Stroke {
-            painting: self,
+            bench: self,
             brush,
             surface,
             scale: path.scale(),

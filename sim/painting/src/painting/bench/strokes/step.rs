@@ -7,18 +7,18 @@ use maulstick_model::brush::head::low_bounds;
 use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::interface::{Step, StepReport, Sweep};
 
-use super::backend::Timing;
 use super::cells::Cells;
 use super::stroke::Stroke;
-use crate::painting::Painting;
+use super::timing::Timing;
+use crate::painting::bench::Workbench;
 use crate::painting::brushes::handling::handling_of;
+use crate::painting::desk::preparation::Preparation;
 use crate::painting::optics::thinner_slot;
-use crate::painting::surfaces::preparation::Preparation;
 
 impl Stroke<'_> {
     /// One step of the brush along its path, doubled so many times.
     pub(super) fn step(&mut self, sweep: Sweep<'_>, doublings: u32) {
-        self.painting.accounts.steps += 1;
+        self.bench.accounts.work.steps += 1;
         let traits = self.traits().doubled(doublings);
         let timing = self.timing();
         let height = self.paint_height(&traits, timing);
@@ -62,17 +62,16 @@ impl Stroke<'_> {
         cells: Cells,
         timing: Timing,
     ) -> Option<StepReport> {
-        let Painting {
-            scene,
-            surfaces,
+        let Workbench {
+            desk,
             brushes,
             backend,
             ..
-        } = &mut *self.painting;
-        let (brush, surface) = (&mut brushes[self.brush], &mut surfaces[self.surface]);
+        } = &mut *self.bench;
+        let (brush, surface) = (&mut brushes[self.brush], &mut desk.surfaces[self.surface]);
         let (_, window) = brush.window.as_mut()?;
-        let handling = handling_of(scene, &brush.name, surface.id);
-        let preparation = Preparation::of(&scene.surfaces[self.surface]);
+        let handling = handling_of(&desk.scene, &brush.name, surface.id);
+        let preparation = Preparation::of(&desk.scene.surfaces[self.surface]);
         // Below this the head may touch.
         window.note_top(surface.top);
         let mut step = Step {
@@ -85,7 +84,7 @@ impl Stroke<'_> {
             handling,
             stain: preparation.stain,
             lasting: preparation.lasting,
-            thinner: thinner_slot(scene),
+            thinner: thinner_slot(&desk.scene),
         };
         let model = backend.models.of(surface.model);
         let report = match timing {

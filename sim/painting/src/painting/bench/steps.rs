@@ -6,22 +6,19 @@ use maulstick_model::interface::Transfer;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::CANVAS;
 
-use super::materials;
-use crate::history::{
-    Change, NonTileState, OpenStep, Step, StepEffects, TilePlace, TileRef, placed,
-};
-use crate::painting::Painting;
+use super::Workbench;
+use crate::history::{Change, NonTileState, OpenStep, Step, StepEffects, materials, placed};
 use crate::painting::brushes::handling::handling_of;
 
-impl Painting {
+impl Workbench {
     /// State besides the tiles.
     pub(crate) fn non_tile_state(&mut self) -> NonTileState {
         NonTileState {
-            loads: self.brushes.load_pages(&self.surfaces.pager),
+            loads: self.brushes.load_pages(&self.desk.surfaces.pager),
             ledger: self.accounts.ledger.clone(),
-            layers: self.scene.layers.clone(),
-            materials: materials(&self.scene),
-            tops: self.surfaces.tops(),
+            layers: self.desk.scene.layers.clone(),
+            materials: materials(&self.desk.scene),
+            tops: self.desk.surfaces.tops(),
         }
     }
 
@@ -32,14 +29,14 @@ impl Painting {
         // A step of nobody's that is open here is a drying's: it is parted by what comes between.
         self.end_step(|step| own.is_none() || step.brush.is_none() || step.brush == own);
         let before = self.non_tile_state();
-        self.history.begin(what, own.as_deref(), before);
+        self.past.history.begin(what, own.as_deref(), before);
     }
 
     /// Begins a step that is a stroke of a brush.
     pub(crate) fn begin_stroke_step(&mut self, brush: usize) {
         let own = &self.brushes[brush];
         let (kind, on_palette) = (own.file.kind.clone(), false);
-        let what = match handling_of(&self.scene, &own.name, CANVAS).transfer {
+        let what = match handling_of(&self.desk.scene, &own.name, CANVAS).transfer {
             Transfer::Vacuum => StepName::Wipe { kind, on_palette },
             _ => StepName::Stroke { kind, on_palette },
         };
@@ -50,14 +47,14 @@ impl Painting {
     pub(crate) fn end_step(&mut self, which: impl Fn(&OpenStep) -> bool) {
         self.close_windows();
         let after = self.non_tile_state();
-        let ended = self.history.take_open(which);
+        let ended = self.past.history.take_open(which);
         let ends = !ended.is_empty();
         for open in ended {
             let step = self.finished(&open, &after);
-            self.history.push(step);
+            self.past.history.push(step);
         }
         if ends {
-            self.keep_to_quota();
+            self.past.keep_to_quota(&self.desk.surfaces);
         }
     }
 
@@ -76,15 +73,9 @@ impl Painting {
     /// Books what was booked since the last call for the step of a brush, or of none.
     pub(crate) fn book(&mut self, brush: Option<usize>) {
         let booked = self.accounts.take_booked();
-        if let Some(open) = self.history.open_of(self.brushes.name(brush)) {
+        if let Some(open) = self.past.history.open_of(self.brushes.name(brush)) {
             open.booked.add(&booked);
         }
-    }
-
-    /// Puts a tile in the place of another, within the open step of no brush.
-    pub(crate) fn replace(&mut self, place: TilePlace, tile: TileRef) {
-        let before = self.surfaces.put(place, tile);
-        self.history.replaced(None, place, before);
     }
 
     /// A step as it is if it ends now. A brush's step leaves what other brushes carry alone.
@@ -92,7 +83,7 @@ impl Painting {
         let tiles = open.tiles.iter().map(|(place, before)| {
             let change = Change {
                 before: before.clone(),
-                after: self.surfaces.tile(*place),
+                after: self.desk.surfaces.tile(*place),
             };
             (*place, change)
         });
@@ -118,14 +109,7 @@ impl Painting {
     /// The steps that are not finished, as they are if they end now.
     pub(crate) fn open_steps(&mut self) -> Vec<Step> {
         let after = self.non_tile_state();
-        let open = self.history.open();
+        let open = self.past.history.open();
         open.map(|open| self.finished(open, &after)).collect()
-    }
-
-    /// Merges the oldest steps until the history keeps to its quota, or only the newest are apart.
-    pub(super) fn keep_to_quota(&mut self) {
-        let (surfaces, versions, record) = (&self.surfaces, &self.versions, &self.record);
-        let besides = || surfaces.held_bytes(versions.tiles().chain(record.tiles()));
-        self.history.keep_to_quota(&surfaces.pager, besides);
     }
 }

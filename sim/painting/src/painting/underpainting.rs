@@ -3,14 +3,10 @@
 use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_canvas::tile::TileId;
-use maulstick_types::Mixture;
-use maulstick_types::mixture::Part;
 use maulstick_types::paint::StepName;
-use maulstick_types::scene::Scene;
 
+use super::Painting;
 use crate::ledger::Ledger;
-use crate::painting::Painting;
-use crate::painting::optics::{Optics, slot_of};
 
 /// State of the paint after it was applied.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,13 +44,14 @@ impl Painting {
         wetness: &Wetness,
         tiles: impl Iterator<Item = LaidTile>,
     ) -> Result<Option<String>, EditError> {
-        let on = self.surfaces.at(surface)?;
-        let slots = self.optics.slots_of(&mut self.scene, paints)?;
-        let [across, up] = self.surfaces[on].store.grid();
-        self.begin_step(StepName::Underpainting, None);
+        let Self { bench, clock } = self;
+        let on = bench.desk.surfaces.at(surface)?;
+        let slots = bench.desk.slots_of(paints)?;
+        let [across, up] = bench.desk.surfaces[on].store.grid();
+        bench.begin_step(StepName::Underpainting, None);
         if matches!(wetness, Wetness::Dry { .. }) {
             // Wet paint dries first, as a step of its own: nothing dries on top of wet paint.
-            self.dry_in_step(on, 1.0, "");
+            bench.dry(clock, on, 1.0, "");
         }
         for tile in tiles {
             if tile.id.x >= across || tile.id.y >= up {
@@ -70,34 +67,15 @@ impl Painting {
                 let count = by_slot[slot].get(cell);
                 count.map_or(0.0, |count| *count as f32)
             };
-            self.lay_on((on, tile.id), quanta, None, Ledger::from_tube);
+            bench.lay_on((on, tile.id), quanta, None, Ledger::from_tube);
         }
         let name = match wetness {
             Wetness::Wet => None,
-            Wetness::Dry { name } => self.dry_in_step(on, 1.0, name),
+            Wetness::Dry { name } => bench.dry(clock, on, 1.0, name),
         };
-        self.end_own_step();
+        bench.end_own_step();
         // No message describes it.
         self.break_record();
         Ok(name)
-    }
-}
-
-impl Optics {
-    /// The slot of each of `paints`.
-    fn slots_of(&mut self, scene: &mut Scene, paints: &[String]) -> Result<Vec<usize>, EditError> {
-        if paints.is_empty() {
-            return Ok(Vec::new());
-        }
-        let share = 1.0 / paints.len() as f64;
-        let part = |paint: &String| Part {
-            paint: paint.clone(),
-            share,
-        };
-        let parts = paints.iter().map(part).collect();
-        self.slots(scene, &Mixture { parts })?;
-        let slot =
-            |paint: &String| slot_of(scene, paint).ok_or_else(|| EditError::NoSlot(paint.clone()));
-        paints.iter().map(slot).collect()
     }
 }

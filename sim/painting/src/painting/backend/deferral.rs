@@ -12,17 +12,17 @@ pub(crate) struct Deferral {
     /// Those of them that are not settled.
     unsettled: u32,
     /// Fullness of the brush when it was last read.
-    pub(super) fullness: Option<f32>,
+    pub(in crate::painting) fullness: Option<f32>,
 }
 
 impl Deferral {
     /// Deferred steps that are not settled.
-    pub(super) fn unsettled(&self) -> u32 {
+    pub(in crate::painting) fn unsettled(&self) -> u32 {
         self.unsettled
     }
 
     /// Counts a step; true where all are to be settled, and the fullness read anew.
-    pub(super) fn count(&mut self) -> bool {
+    pub(in crate::painting) fn count(&mut self) -> bool {
         self.steps += 1;
         self.unsettled += 1;
         let is_due = self.steps.is_multiple_of(SETTLE_EVERY);
@@ -33,7 +33,7 @@ impl Deferral {
     }
 
     /// All steps are settled; returns their number.
-    pub(super) fn settle(&mut self) -> u32 {
+    pub(in crate::painting) fn settle(&mut self) -> u32 {
         std::mem::take(&mut self.unsettled)
     }
 }

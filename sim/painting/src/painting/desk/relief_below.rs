@@ -16,9 +16,9 @@ use maulstick_types::brush::{BrushRelief, Solve};
 use maulstick_types::haptics::height_bytes;
 use maulstick_types::paint::TILE;
 
-use super::SurfaceState;
-use crate::painting::Painting;
+use super::Desk;
 use crate::painting::optics::thinner_slot;
+use crate::painting::surfaces::SurfaceState;
 
 /// Side of a cell on the desk, m; where a cell of the paint is wider, that one's.
 const CELL_M: f64 = 1e-3;
@@ -29,11 +29,9 @@ const POINTS: i64 = 4;
 /// A tip that is higher than this feels nothing soon, m of the desk.
 const FAR_M: f64 = 0.03;
 
-impl Painting {
-    /// Relief below a brush as it was solved; none for a brush far from the surface, or one that is not known.
-    #[must_use]
-    pub fn relief_below(&self, brush: &str, solve: &Solve) -> Option<BrushRelief> {
-        let head_m = self.brushes.find(brush)?.file.length_m();
+impl Desk {
+    /// Relief below a brush of a head so long, m, as it was solved; none for one that is far from the surface.
+    pub(crate) fn relief_below(&self, head_m: f64, solve: &Solve) -> Option<BrushRelief> {
         let surface = self.surfaces.find(solve.surface)?;
         let zoom = self
             .scene

@@ -1,5 +1,7 @@
 //! Every paint model behind a painting: strokes, undo, drying, the books; and what the marker alone does.
 
+mod dab;
+
 use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_marker::{FILM_M, Marker};

@@ -8,35 +8,34 @@ use maulstick_types::paint::TILE;
 
 use super::cells::Cells;
 use super::stroke::Stroke;
-use crate::painting::Painting;
+use crate::painting::bench::Workbench;
+use crate::painting::desk::preparation::Preparation;
 use crate::painting::optics::thinner_slot;
-use crate::painting::surfaces::preparation::Preparation;
 
 impl Stroke<'_> {
     /// Has the model move the paint that the stroke has reached.
     pub(super) fn relax(&mut self) {
         let model = self.surface().model;
-        let halo = self.painting.backend.models.of(model).rest_halo();
+        let halo = self.bench.backend.models.of(model).rest_halo();
         let Some(halo) = halo.filter(|_| !self.has_wells()) else {
             return;
         };
         let Some(reached) = self.reached() else {
             return;
         };
-        self.painting.settle();
+        self.bench.settle();
         // Tiles between those that it reached may be another brush's.
         self.claim(reached);
         // With what the model looks at beside it, whatever the window held before.
         if !self.open_window(reached.grown(halo as i64)) {
             return;
         }
-        let Painting {
-            scene,
-            surfaces,
+        let Workbench {
+            desk,
             brushes,
             backend,
             ..
-        } = &mut *self.painting;
+        } = &mut *self.bench;
         let Some((_, window)) = &mut brushes[self.brush].window else {
             return;
         };
@@ -47,17 +46,17 @@ impl Stroke<'_> {
         backend.models.of(model).rest(&mut Rest {
             window,
             area,
-            cell_m: surfaces[self.surface].cell_m,
-            stain: Preparation::of(&scene.surfaces[self.surface]).stain,
-            thinner: thinner_slot(scene),
+            cell_m: desk.surfaces[self.surface].cell_m,
+            stain: Preparation::of(&desk.scene.surfaces[self.surface]).stain,
+            thinner: thinner_slot(&desk.scene),
         });
     }
 
     /// Cells of the tiles that the stroke has reached on the surface.
     fn reached(&mut self) -> Option<Cells> {
         let surface = self.surface().id;
-        let name = &self.painting.brushes[self.brush].name;
-        let open = self.painting.history.open_of(Some(name))?;
+        let name = &self.bench.brushes[self.brush].name;
+        let open = self.bench.past.history.open_of(Some(name))?;
         let reached = open.reached.iter().filter(|(on, _)| *on == surface);
         let [low, high] = reached.fold(None, |bounds: Option<[[u32; 2]; 2]>, (_, id)| {
             let [low, high] = bounds.unwrap_or([[u32::MAX; 2], [0; 2]]);
