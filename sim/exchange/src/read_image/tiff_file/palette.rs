@@ -6,9 +6,9 @@ use std::io::{BufRead, Cursor, Read as _, Seek};
 use tiff::decoder::Decoder;
 use tiff::tags::{ByteOrder, PhotometricInterpretation as Photometric, Tag};
 
-use super::pixels::Numbers;
-use super::tiff_file::{Samples, open, samples, wrong};
+use super::{Samples, open, samples, wrong};
 use crate::import_error::ImportError;
+use crate::read_image::pixels::Numbers;
 
 /// Bytes of a directory's count and of an entry, and where in it the value stands.
 struct Form {
