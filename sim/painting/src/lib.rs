@@ -16,6 +16,7 @@
 //! | [`snapshot`] | the part of a document that is not tiles |
 //! | [`picture`] | pictures of its surfaces |
 //! | [`brush_colour`] | the paint on a brush as it is shown |
+//! | [`EditError`] | why an edit is refused, data until a person reads it |
 //!
 //! A film of paint, undone; the books are even to the quantum both times:
 //!
@@ -100,7 +101,7 @@ pub mod snapshot;
 
 pub use beginning::{Beginning, RecordChange};
 pub use edits::Applied;
-pub use error::paint_error;
+pub use error::{BrushError, EditError, HistoryError, LayerError, SurfaceError, VersionError};
 pub use painting::{Checkpoint, LaidTile, NOW, Named, Painting, Restored, UnderBrush, Wetness};
 pub use sequencer::{Effect, Sequencer};
 pub use setup::PaintingSetup;

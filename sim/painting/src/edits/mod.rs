@@ -32,10 +32,10 @@ pub use surface::{
 
 use std::fmt::Debug;
 
-use maulstick_canvas::EditError;
 use maulstick_types::values::{BrushName, ValueError};
 use maulstick_types::{Edit, Mixture};
 
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Hands the list of all edits to a macro.

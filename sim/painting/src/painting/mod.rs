@@ -25,7 +25,6 @@ use std::sync::Arc;
 use maulstick_appearance::Appearance;
 use maulstick_appearance::blank_surface::BlankSurface;
 use maulstick_brush::BrushFile;
-use maulstick_canvas::EditError;
 use maulstick_canvas::assets::Assets;
 use maulstick_canvas::page::Pager;
 use maulstick_canvas::store::TileStore;
@@ -38,6 +37,7 @@ use maulstick_types::scene::{Light, Scene};
 
 use crate::brush_colour::Carried;
 use crate::clock::Clock;
+use crate::error::EditError;
 use crate::history::History;
 use crate::ledger::LedgerReport;
 use crate::setup::PaintingSetup;
@@ -108,7 +108,7 @@ impl Painting {
     /// # Errors
     /// As [`Assets::add`].
     pub fn embed(&mut self, bytes: Arc<[u8]>) -> Result<String, EditError> {
-        self.bench.desk.optics.assets.add(bytes)
+        Ok(self.bench.desk.optics.assets.add(bytes)?)
     }
 
     /// A surface without what was painted on it.

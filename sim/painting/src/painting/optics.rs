@@ -10,7 +10,6 @@ use maulstick_appearance::colouring::Colouring;
 use maulstick_appearance::ground::Ground;
 use maulstick_appearance::heap::{Heap, HeapCells};
 use maulstick_appearance::light::studio_settings;
-use maulstick_canvas::EditError;
 use maulstick_canvas::assets::Assets;
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_canvas::relief::Relief;
@@ -19,7 +18,7 @@ use maulstick_optics::{Paint, PaintLibrary, Spectrum, Studio, THINNER};
 use maulstick_types::Mixture;
 use maulstick_types::scene::{Light, PaintSlot, Scene, Surface, WellKind};
 
-use crate::error::paint_error;
+use crate::error::EditError;
 use crate::history::materials;
 use crate::setup::relief_called;
 use maulstick_models::model_called;
@@ -48,7 +47,7 @@ impl Optics {
         let settings = studio_settings(&scene.light)?;
         let mut look = Appearance::new(Studio::new(&settings, library.paints()));
         for (place, slot) in scene.paints.iter().enumerate() {
-            let paint = library.find(&slot.name).map_err(paint_error)?;
+            let paint = library.find(&slot.name)?;
             look.studio.add(paint);
             if paint.is_thinner() {
                 look.thinner = Some(place);
@@ -107,11 +106,11 @@ impl Optics {
                     continue;
                 }
             };
-            let mixture = self.library.check(mixture).map_err(paint_error)?;
+            let mixture = self.library.check(mixture)?;
             let mut mixed = studio.clone();
             let mut shares = Vec::new();
             for part in &mixture.parts {
-                let paint = self.library.find(&part.paint).map_err(paint_error)?;
+                let paint = self.library.find(&part.paint)?;
                 shares.push((mixed.add(paint), part.share));
             }
             let colours = HeapColours::of(&mixed, &shares, ground.mean());
@@ -136,11 +135,11 @@ impl Optics {
         scene: &mut Scene,
         mixture: &Mixture,
     ) -> Result<SlotShares, EditError> {
-        let mixture = self.library.check(mixture).map_err(paint_error)?;
+        let mixture = self.library.check(mixture)?;
         let mut new = Vec::new();
         for part in &mixture.parts {
             if slot_of(scene, &part.paint).is_none() {
-                new.push(self.library.find(&part.paint).map_err(paint_error)?);
+                new.push(self.library.find(&part.paint)?);
             }
         }
         // All or none: a refused mixture changes nothing.

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::assets::Assets;
 use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::tile::Version;
@@ -21,6 +20,7 @@ use super::past::record::RecordState;
 use super::past::versions::Versions;
 use super::{Named, Painting};
 use crate::beginning::Beginning;
+use crate::error::EditError;
 use crate::history::{History, NonTileState, Step, TilePlace, materials};
 use crate::setup::check_size;
 use crate::snapshot::PaintingSnapshot;

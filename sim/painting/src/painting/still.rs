@@ -1,11 +1,11 @@
 //! A painting as it is at a moment, to be looked at beside the one that is painted on.
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::tile::{TileId, Version};
 
 use super::Painting;
 use super::bench::Workbench;
 use crate::clock::Clock;
+use crate::error::EditError;
 use crate::history::Direction;
 
 impl Painting {
@@ -102,6 +102,7 @@ mod tests {
     use maulstick_types::values::{FilmThickness, LayerName, Share};
 
     use super::*;
+    use crate::error::HistoryError;
     use crate::picture::picture;
     use crate::setup::PaintingSetup;
 
@@ -189,7 +190,7 @@ mod tests {
             assert_eq!(painting.report().quanta_missing, 0);
         }
         assert!(pictures[1].1 != pictures[2].1, "a fault would pass");
-        assert_eq!(painting.go_to(77), Err(EditError::NoStep));
+        assert_eq!(painting.go_to(77), Err(HistoryError::NoStep.into()));
         assert!(painting.still_after(77).is_none());
         assert_eq!(painting.history_depth(), (2, 2), "nothing has changed");
     }

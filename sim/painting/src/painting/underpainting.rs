@@ -1,11 +1,11 @@
 //! Paint applied cell by cell: an underpainting after a picture.
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_canvas::tile::TileId;
 use maulstick_types::paint::StepName;
 
 use super::Painting;
+use crate::error::EditError;
 use crate::ledger::Ledger;
 
 /// State of the paint after it was applied.

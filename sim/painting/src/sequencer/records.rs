@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use maulstick_brush::BrushFile;
-use maulstick_canvas::EditError;
 use maulstick_canvas::assets::Assets;
 use maulstick_canvas::page::Pager;
 use maulstick_canvas::tile::Version;
@@ -18,6 +17,7 @@ use maulstick_types::{Header, Mixture, Origin};
 use super::{NOT_PAINTED, Sequencer};
 use crate::beginning::Beginning;
 use crate::edits::Applied;
+use crate::error::{BrushError, EditError};
 use crate::painting::{Painting, Restored};
 use crate::snapshot::{PaintingSnapshot, SequencerSnapshot};
 
@@ -164,10 +164,10 @@ impl Sequencer {
     /// Introduces a brush, or gives a known one another file.
     ///
     /// # Errors
-    /// [`EditError::TooManyBrushes`] for a new one where there are [so many](BRUSHES_MOST).
+    /// [`BrushError::TooMany`] for a new one where there are [so many](BRUSHES_MOST).
     pub fn define_brush(&mut self, brush: &str, file: BrushFile) -> Result<(), EditError> {
         if !self.painting.knows_brush(brush) && self.painting.brushes().count() >= BRUSHES_MOST {
-            return Err(EditError::TooManyBrushes(brush.to_owned()));
+            return Err(BrushError::TooMany(brush.to_owned()).into());
         }
         let toml = file.to_toml().unwrap_or_default();
         if self.painting.define_brush(brush, file) {

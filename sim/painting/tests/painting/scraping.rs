@@ -3,10 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use maulstick_brush::palette_place::{mirrored, size_m};
-use maulstick_canvas::EditError;
 use maulstick_painting::edits::{Dry, PaintingEdit as _, Redo, Scrape, Undo, Wells};
 use maulstick_painting::setup::wells_of;
-use maulstick_painting::{Painting, PaintingSetup};
+use maulstick_painting::{LayerError, Painting, PaintingSetup};
 use maulstick_types::Mixture;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::{CANVAS, PALETTE, Surface, Well, WellKind};
@@ -27,7 +26,7 @@ fn wet_paint_goes_and_comes_back_by_undo_and_dry_paint_stays() {
         ..PaintingSetup::default()
     });
     let nothing = scrape(CANVAS, None).apply(&mut painting);
-    assert_eq!(nothing, Err(EditError::NothingWet(None)));
+    assert_eq!(nothing, Err(LayerError::NothingWet(None).into()));
     assert_eq!(painting.history_depth().0, 0, "no step");
     fill("Bone Black", 30.0).apply(&mut painting).expect("laid");
     Dry::whole(CANVAS).apply(&mut painting).expect("dried");

@@ -1,11 +1,11 @@
 //! Sets the mode of a brush.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::scene::{BrushHandling, BrushMode, MARKER_FLOW};
 use maulstick_types::values::{BrushName, FilmThickness, MarkerFlow, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Set the mode of a brush: sponge, marker, sampler, vacuum, …

@@ -1,12 +1,12 @@
 //! Loads a brush with paint.
 
-use maulstick_canvas::EditError;
 use maulstick_model::brush::load::Half;
 use maulstick_types::paint::StepName;
 use maulstick_types::values::{BrushName, ValueError};
 use maulstick_types::{EditFields, Mixture};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 use crate::painting::brushes::loads::named;
 

@@ -1,11 +1,11 @@
 //! Makes a brush stiffer or softer than its file says.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::scene::Tuning;
 use maulstick_types::values::{BrushName, Stiffness, ValueError, Wetness};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Make a brush stiffer or softer

@@ -1,9 +1,9 @@
 //! Takes the newest step back.
-use maulstick_canvas::EditError;
 use maulstick_types::values::{BrushName, ValueError};
 use maulstick_types::{Edit, EditFields};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Undo the newest step

@@ -1,6 +1,5 @@
 //! Dries wet paint, at once or while time goes by.
 
-use maulstick_canvas::EditError;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{LayerName, Share, Ticks, ValueError};
@@ -8,6 +7,7 @@ use maulstick_types::{EditFields, Region};
 
 use crate::clock::{Drying, TICKS_A_SECOND};
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::{EditError, LayerError};
 use crate::painting::Painting;
 
 /// Dry the wet paint into a new layer
@@ -64,11 +64,11 @@ impl Dry {
         let region = self.region.as_ref();
         let (on, part) = bench.desk.surfaces.part(self.surface, region)?;
         if clock.dryings.iter().any(|it| it.surface == self.surface) {
-            return Err(EditError::Drying);
+            return Err(LayerError::Drying.into());
         }
         bench.commit();
         if !bench.desk.surfaces[on].is_wet(&part) {
-            return Err(EditError::NothingWet(region.cloned()));
+            return Err(LayerError::NothingWet(region.cloned()).into());
         }
         let ticks = over.get();
         clock.dryings.push(Drying {
@@ -126,7 +126,7 @@ impl PaintingEdit for Dry {
         let number = bench.desk.next_layer();
         let dried = surfaces[on].dried(&part, number, self.share.get());
         if dried.is_empty() {
-            return Err(EditError::NothingWet(self.region.clone()));
+            return Err(LayerError::NothingWet(self.region.clone()).into());
         }
         clock.stop(Some(self.surface));
         bench.begin_step(StepName::Dry, None);

@@ -1,11 +1,11 @@
 //! Gives a dry layer another name.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
 use maulstick_types::values::{LayerName, ValueError};
 
 use crate::edits::{Applied, Form, LayerRef, PaintingEdit, StepForm};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Give a dry layer another name

@@ -3,12 +3,12 @@
 use std::fmt;
 use std::str::FromStr;
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
 use maulstick_types::values::{LayerName, OpacityFactor, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
+use crate::error::{EditError, LayerError};
 use crate::painting::Painting;
 use maulstick_types::scene::Scene;
 
@@ -49,7 +49,7 @@ impl fmt::Display for LayerRef {
 
 impl LayerRef {
     /// Its place in a scene.
-    pub(crate) fn place_in(&self, scene: &Scene) -> Result<usize, EditError> {
+    pub(crate) fn place_in(&self, scene: &Scene) -> Result<usize, LayerError> {
         let layers = &scene.layers;
         let numbered = |number: u32| layers.iter().position(|layer| layer.number == number);
         let found = match self {
@@ -59,7 +59,7 @@ impl LayerRef {
                 .rposition(|layer| layer.name == name.as_str())
                 .or_else(|| numbered(name.parse().ok()?)),
         };
-        found.ok_or_else(|| EditError::NoLayer {
+        found.ok_or_else(|| LayerError::Unknown {
             which: self.to_string(),
             known: layers
                 .iter()

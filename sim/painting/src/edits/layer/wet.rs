@@ -5,7 +5,6 @@ use std::fmt;
 use std::num::NonZeroU32;
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::ValueError;
@@ -13,6 +12,7 @@ use maulstick_types::{EditFields, Region};
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::{EditError, LayerError};
 use crate::painting::Painting;
 use crate::painting::desk::Desk;
 use crate::painting::surfaces::Changed;
@@ -106,15 +106,16 @@ impl PaintingEdit for Wet {
         let surface = &bench.desk.surfaces[on];
         let numbers = surface.newest_on(&part, self.layers);
         let Some(least) = numbers.first().copied() else {
-            return Err(EditError::NothingDry(self.region.clone()));
+            return Err(LayerError::NothingDry(self.region.clone()).into());
         };
         let known = bench.desk.scene.layers.iter();
         let chosen = known.filter(|layer| numbers.contains(&layer.number));
         if let Some(veiled) = chosen.clone().find(|layer| layer.opacity != 1.0) {
-            return Err(EditError::Veiled {
+            return Err(LayerError::Veiled {
                 number: veiled.number,
                 name: veiled.name.clone(),
-            });
+            }
+            .into());
         }
         let layers: Vec<String> = chosen.rev().map(|layer| layer.name.clone()).collect();
         let mut full_cells = 0;
@@ -126,7 +127,7 @@ impl PaintingEdit for Wet {
             }
         }
         if tiles.is_empty() {
-            return Err(EditError::NoRoom(self.region.clone()));
+            return Err(LayerError::NoRoom(self.region.clone()).into());
         }
         clock.stop(Some(self.surface));
         bench.begin_step(StepName::Wet, None);

@@ -1,6 +1,5 @@
 //! Gives the paint of a surface another model.
 
-use maulstick_canvas::EditError;
 use maulstick_models::{AutoRole, auto_model, model_called};
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
@@ -8,6 +7,7 @@ use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{ModelName, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::{EditError, SurfaceError};
 use crate::history::materials;
 use crate::painting::Painting;
 
@@ -58,7 +58,7 @@ impl PaintingEdit for Convert {
         let to = model_called(&self.model)?;
         let from = bench.desk.surfaces[on].model;
         if std::ptr::eq(from, to) {
-            return Err(EditError::SameModel(to.name));
+            return Err(SurfaceError::SameModel(to.name).into());
         }
         bench.close_windows();
         clock.stop(Some(self.surface));

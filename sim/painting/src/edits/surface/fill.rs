@@ -1,6 +1,5 @@
 //! Lays an even film of wet paint over a surface.
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::{Counts, QUANTUM_M, SLOTS};
 use maulstick_canvas::tile::TileId;
 use maulstick_types::paint::StepName;
@@ -10,6 +9,7 @@ use maulstick_types::{EditFields, Mixture};
 use serde::de::{Deserialize as _, Deserializer};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::EditError;
 use crate::ledger::Ledger;
 use crate::painting::Painting;
 use crate::painting::bench::Workbench;

@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::dry::{DRY_LAYERS_MOST, DryLayer, DryStack};
 use maulstick_canvas::own_plane::{OwnPlane, OwnShape};
 use maulstick_canvas::page::{Page, Pager};
@@ -15,6 +14,7 @@ use maulstick_types::scene::CANVAS;
 use maulstick_types::values::ValueError;
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Flip the canvas left to right, to see the drawing afresh

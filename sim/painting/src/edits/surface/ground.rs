@@ -3,7 +3,6 @@
 use std::str::FromStr;
 
 use maulstick_appearance::ground::{add_spectrum, check_ground};
-use maulstick_canvas::EditError;
 use maulstick_canvas::assets::SPECTRUM;
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
@@ -11,6 +10,7 @@ use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{MaterialName, SpectrumText, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// What a ground is made of.

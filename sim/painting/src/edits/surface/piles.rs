@@ -1,6 +1,5 @@
 //! Lets paint on a surface deplete or last.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::nearest::choice;
 use maulstick_types::scene::PALETTE;
@@ -8,6 +7,7 @@ use maulstick_types::values::ValueError;
 use serde::de::{Deserialize, Deserializer};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Let paint on the palette deplete or last

@@ -1,12 +1,12 @@
 //! Moves, turns or zooms a surface.
 
-use maulstick_canvas::EditError;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{ValueError, Zoom, check_reach};
 use maulstick_types::{EditFields, Pose};
 use serde::de::{Deserialize, Deserializer, Error};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Move, turn or zoom a surface

@@ -1,12 +1,12 @@
 //! Changes the light, or how it becomes colour.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::scene::{Light, LightError};
 use maulstick_types::values::ValueError;
 use serde::de::{Deserialize, Deserializer, Error};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Change the light

@@ -1,12 +1,12 @@
 //! Scrapes wet paint off a surface.
 
-use maulstick_canvas::EditError;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::PALETTE;
 use maulstick_types::values::ValueError;
 use maulstick_types::{EditFields, Region};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::{EditError, LayerError};
 use crate::painting::Painting;
 
 /// Scrape the wet paint off the palette
@@ -65,7 +65,7 @@ impl PaintingEdit for Scrape {
         let surface = &surfaces[on];
         let scraped = surface.scraped(|id| surface.staying(&part, id));
         if scraped.is_empty() {
-            return Err(EditError::NothingWet(self.region.clone()));
+            return Err(LayerError::NothingWet(self.region.clone()).into());
         }
         clock.stop(Some(self.surface));
         bench.begin_step(StepName::Scrape, None);

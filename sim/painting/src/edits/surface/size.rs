@@ -1,11 +1,11 @@
 //! Sizes a surface.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{StainThickness, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Size the canvas

@@ -1,12 +1,12 @@
 //! Gives a surface another tooth.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{MaterialName, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 use crate::setup::relief_called;
 

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::limits::{FARTHEST_M, WELLS_MAX};
 use maulstick_types::paint::StepName;
@@ -11,6 +10,7 @@ use maulstick_types::values::ValueError;
 use serde::de::{Deserialize, Deserializer, Error};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 use crate::painting::surfaces::WellMoves;
 

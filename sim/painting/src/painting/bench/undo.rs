@@ -1,10 +1,10 @@
 //! Undo and redo.
 
-use maulstick_canvas::EditError;
 use maulstick_types::paint::StepName;
 
 use super::Workbench;
 use crate::clock::Clock;
+use crate::error::{EditError, HistoryError};
 use crate::history::{Direction, OpenStep, Step, materials, same};
 
 impl Workbench {
@@ -25,7 +25,7 @@ impl Workbench {
         // Nothing lies over a step that is not finished.
         if !self.past.history.open().any(own) {
             let step = self.past.history.last_done(brush);
-            let nothing = || EditError::NothingToUndo(brush.map(str::to_owned));
+            let nothing = || HistoryError::NothingToUndo(brush.map(str::to_owned));
             let step = step.ok_or_else(nothing)?;
             self.check(step, Direction::Undo)?;
         }
@@ -74,7 +74,7 @@ impl Workbench {
         }
         self.commit();
         let step = self.past.history.last_undone(brush).cloned();
-        let step = step.ok_or(EditError::NothingToRedo)?;
+        let step = step.ok_or(HistoryError::NothingToRedo)?;
         self.check(&step, Direction::Redo)?;
         self.end_step(|_| true);
         Ok(self.walk(clock, &step, Direction::Redo))
@@ -91,7 +91,7 @@ impl Workbench {
             // Of steps that are not finished none counts as newer.
             return Ok(what);
         }
-        let way = self.past.history.way_to(step).ok_or(EditError::NoStep)?;
+        let way = self.past.history.way_to(step).ok_or(HistoryError::NoStep)?;
         let way: Vec<Direction> = way.into_iter().map(|(way, _)| way).collect();
         let way: Vec<Direction> = match way.first() {
             Some(Direction::Redo) => way,
@@ -128,7 +128,7 @@ impl Workbench {
     }
 
     /// Sees that all is as the step left it, or found it.
-    fn check(&self, step: &Step, way: Direction) -> Result<(), EditError> {
+    fn check(&self, step: &Step, way: Direction) -> Result<(), HistoryError> {
         let from = way.ends()[0];
         let effects = &step.effects;
         let mut tiles = step.tiles.iter();
@@ -153,7 +153,7 @@ impl Workbench {
             return Ok(());
         }
         let other = later.or_else(|| self.past.history.last_done(None));
-        Err(EditError::Covered {
+        Err(HistoryError::Covered {
             what: step.what.clone(),
             over: other.map(|step| step.what.clone()),
         })

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_types::paint::StepName;
 
 use super::Workbench;
 use crate::clock::Clock;
+use crate::error::EditError;
 use crate::history::{TilePlace, same};
 use crate::painting::past::versions::Named;
 

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::Counts;
 use maulstick_model::brush::load::Half;
 use maulstick_optics::THINNER;
@@ -10,6 +9,7 @@ use maulstick_types::scene::{Scene, Surface, WellKind};
 use maulstick_types::{Mixture, mixture::Part};
 
 use super::PaintingBrush;
+use crate::error::BrushError;
 use crate::ledger::Ledger;
 use crate::painting::backend::deferral::Deferral;
 use crate::painting::desk::Desk;
@@ -53,8 +53,8 @@ impl PaintingBrush {
     }
 
     /// Mixture of all paint on it, shares by volume.
-    pub(crate) fn mixture(&self, scene: &Scene) -> Result<Mixture, EditError> {
-        mixture_of(&self.load.counts(), scene).ok_or(EditError::EmptyBrush(self.name.clone()))
+    pub(crate) fn mixture(&self, scene: &Scene) -> Result<Mixture, BrushError> {
+        mixture_of(&self.load.counts(), scene).ok_or(BrushError::Empty(self.name.clone()))
     }
 }
 

@@ -7,10 +7,10 @@ pub(crate) mod preparation;
 mod relief_below;
 mod wells;
 
+use crate::error::EditError;
 use std::sync::Arc;
 
 use maulstick_appearance::light::{changes_colour, studio_settings};
-use maulstick_canvas::EditError;
 use maulstick_canvas::assets::Assets;
 use maulstick_canvas::page::Pager;
 use maulstick_optics::{PaintLibrary, Studio};
@@ -20,7 +20,6 @@ use maulstick_types::scene::{Light, Scene, Surface};
 
 use super::optics::{Optics, SlotShares, paint_slot, slot_of};
 use super::surfaces::Surfaces;
-use crate::error::paint_error;
 
 /// The scene, its surfaces and the look of their paint.
 #[derive(Clone)]
@@ -100,7 +99,7 @@ impl Desk {
             let mut studio = Studio::new(&settings, self.optics.library.paints());
             let mut slots = Vec::new();
             for slot in &self.scene.paints {
-                let paint = self.optics.library.find(&slot.name).map_err(paint_error)?;
+                let paint = self.optics.library.find(&slot.name)?;
                 slots.push(paint_slot(&mut studio, paint, slot.file_hash));
             }
             let mut bares = Vec::new();

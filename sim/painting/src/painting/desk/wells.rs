@@ -1,10 +1,9 @@
 //! The wells of a palette: their places and kinds.
 
-use maulstick_canvas::EditError;
+use crate::error::{EditError, SurfaceError};
 use maulstick_types::scene::{Surface, Well, WellKind};
 
 use super::Desk;
-use crate::error::paint_error;
 
 /// Wells may reach beyond the edge of their surface by what rounding makes of it, m.
 const EDGE_M: f64 = 1e-6;
@@ -21,13 +20,14 @@ impl Desk {
                 low >= -EDGE_M && high <= size[i] + EDGE_M
             };
             if well.radius_m <= 0.0 || !(lies(0) && lies(1)) {
-                return Err(EditError::WellBeside {
+                return Err(SurfaceError::WellBeside {
                     place: place + 1,
                     surface_mm: size.map(|m| m * 1e3),
-                });
+                }
+                .into());
             }
             if let WellKind::Paint { mixture } = &mut well.kind {
-                *mixture = self.optics.library.check(mixture).map_err(paint_error)?;
+                *mixture = self.optics.library.check(mixture)?;
             }
         }
         Ok(changed)

@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::tile::Tile;
 use maulstick_types::scene::NamedVersion;
 
+use crate::error::VersionError;
 use crate::history::{NonTileState, TilePlace, TileRef};
 
 /// A painting as it was.
@@ -58,20 +58,20 @@ impl Versions {
     }
 
     /// A version by its name.
-    pub(crate) fn find(&self, name: &str) -> Result<&Named, EditError> {
-        self.named.get(name).ok_or_else(|| EditError::NoVersion {
+    pub(crate) fn find(&self, name: &str) -> Result<&Named, VersionError> {
+        self.named.get(name).ok_or_else(|| VersionError::Unknown {
             name: name.to_owned(),
             known: self.named.keys().cloned().collect(),
         })
     }
 
     /// Sees that a name is free.
-    pub(crate) fn check_new(&self, name: &str) -> Result<(), EditError> {
+    pub(crate) fn check_new(&self, name: &str) -> Result<(), VersionError> {
         if name == NOW {
-            return Err(EditError::VersionNow(NOW));
+            return Err(VersionError::Now(NOW));
         }
         if self.named.contains_key(name) {
-            return Err(EditError::VersionTaken(name.to_owned()));
+            return Err(VersionError::Taken(name.to_owned()));
         }
         Ok(())
     }
@@ -84,7 +84,7 @@ impl Versions {
     }
 
     /// Removes a version; those painted from it count as painted from what it was painted from.
-    pub(crate) fn remove(&mut self, name: &str) -> Result<(), EditError> {
+    pub(crate) fn remove(&mut self, name: &str) -> Result<(), VersionError> {
         let parent = self.find(name)?.parent.clone();
         self.named.remove(name);
         self.touched.insert(name.to_owned());

@@ -13,7 +13,6 @@ use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
 use maulstick_appearance::blank_surface::BlankSurface;
-use maulstick_canvas::EditError;
 use maulstick_canvas::page::Pager;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::store::{TileRect, TileStore};
@@ -22,6 +21,7 @@ use maulstick_canvas::window::Window;
 use maulstick_types::scene::Scene;
 
 use super::optics::Optics;
+use crate::error::{EditError, SurfaceError};
 use crate::history::{TilePlace, TileRef};
 use maulstick_models::{ModelEntry, model_called};
 
@@ -95,9 +95,9 @@ impl Surfaces {
     }
 
     /// Index of a surface.
-    pub(crate) fn at(&self, id: u32) -> Result<usize, EditError> {
+    pub(crate) fn at(&self, id: u32) -> Result<usize, SurfaceError> {
         let found = self.states.iter().position(|surface| surface.id == id);
-        found.ok_or(EditError::NoSurface(id))
+        found.ok_or(SurfaceError::Unknown(id))
     }
 
     /// A surface by its number.

@@ -1,9 +1,9 @@
 //! Parts of surfaces, and what of them is wet or dry.
 
+use crate::error::{EditError, SurfaceError};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_types::Region;
@@ -51,7 +51,7 @@ impl SurfaceState {
         };
         region.check()?;
         let within = region.cells(cells, self.cell_m);
-        let cells = within.ok_or_else(|| EditError::NoCell {
+        let cells = within.ok_or_else(|| SurfaceError::NoCell {
             region: region.clone(),
             surface_mm: cells.map(|cells| f64::from(cells) * self.cell_m * 1e3),
         })?;

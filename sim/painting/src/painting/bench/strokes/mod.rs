@@ -8,7 +8,7 @@ mod tiles;
 mod timing;
 mod wells;
 
-use maulstick_canvas::EditError;
+use crate::error::{BrushError, EditError};
 use maulstick_model::brush::scale::Scale;
 use maulstick_model::path::PathStepper;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
@@ -39,7 +39,7 @@ impl Workbench {
         let own = &self.brushes[brush];
         let fits = solve.stroke == 0 || own.head.fits(solve.angles_rad.len());
         if !fits || solve.fault().is_some() {
-            return Err(EditError::Unfit(own.name.clone()));
+            return Err(BrushError::Unfit(own.name.clone()).into());
         }
         self.accounts.note_time(solve.event_ns);
         let Ok(surface) = self.desk.surfaces.at(solve.surface) else {

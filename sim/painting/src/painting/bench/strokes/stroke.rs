@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_model::brush::head::Waypoint;
 use maulstick_model::brush::load::Half;
 use maulstick_model::brush::scale::Scale;
@@ -11,6 +10,7 @@ use maulstick_model::path::PathStepper;
 use maulstick_types::brush::{Solve, solve_flags};
 use maulstick_types::scene::CANVAS;
 
+use crate::error::EditError;
 use crate::painting::backend::deferral::Deferral;
 use crate::painting::bench::Workbench;
 use crate::painting::brushes::PaintingBrush;
