@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use maulstick_brush::BrushFile;
-use maulstick_canvas::EditError;
 use maulstick_models::{AUTO, AutoRole, auto_model, model_called};
 use maulstick_optics::{Illuminant, PaintError, PaintLibrary};
-use maulstick_painting::{PaintingSetup, paint_error};
+use maulstick_painting::{EditError, PaintingSetup};
 use maulstick_rig::UserError;
 use maulstick_rig::config::{BACKENDS, BrushSection, LightSection, RigConfig};
 use maulstick_rig::table_file::{MOST_BYTES, read_table};
@@ -247,12 +246,13 @@ pub fn mixture_of(text: &str, library: &PaintLibrary) -> Result<Mixture, UserErr
     let mixture = text.parse().map_err(PaintError::Mixture);
     mixture
         .and_then(|mixture: Mixture| library.check(&mixture))
-        .map_err(|error| refused(paint_error(error)))
+        .map_err(refused)
 }
 
 /// A refusal of the painting as the user sees it.
 #[must_use]
-pub fn refused(refusal: EditError) -> UserError {
+pub fn refused(refusal: impl Into<EditError>) -> UserError {
+    let refusal = refusal.into();
     UserError::usage(refusal.to_string()).advise(refusal.advice())
 }
 
@@ -277,7 +277,7 @@ pub fn library_from(path: Option<&Path>) -> Result<PaintLibrary, UserError> {
         PaintError::File { line, what } => UserError::usage(what)
             .at(format!("{}:{line}", path.display()))
             .help("a row: paint, colour index, source, K or S, then 101 values, 380 to 780 nm"),
-        other => refused(paint_error(other)),
+        other => refused(other),
     })
 }
 
@@ -336,7 +336,7 @@ pub fn painting_setup(
         .iter()
         .map(|text| {
             text.parse::<Mixture>()
-                .map_err(|error| refused(paint_error(error.into())).at("[palette] wells"))
+                .map_err(|error| refused(PaintError::from(error)).at("[palette] wells"))
         })
         .collect::<Result<_, _>>()?;
     let mut setup = PaintingSetup {

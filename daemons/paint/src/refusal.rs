@@ -1,6 +1,6 @@
 //! Refusals of what the node does besides painting, with advice.
 
-use maulstick_canvas::EditError;
+use maulstick_painting::EditError;
 use maulstick_types::command::Outcome;
 use maulstick_types::command::advice::Advice;
 

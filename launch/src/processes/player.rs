@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use maulstick_device::Take;
 use maulstick_device::player::{self, PlayerSettings, Rate};
-use maulstick_painting::paint_error;
+use maulstick_optics::PaintError;
 use maulstick_rig::UserError;
 use maulstick_types::Mixture;
 use nix::sys::signal::Signal;
@@ -46,7 +46,7 @@ pub(super) fn run(options: &PlayerOptions) -> Result<i32, UserError> {
         .iter()
         .map(|text| {
             text.parse::<Mixture>()
-                .map_err(|error| refused(paint_error(error.into())))
+                .map_err(|error| refused(PaintError::from(error)))
         })
         .collect::<Result<_, _>>()?;
     let settings = PlayerSettings {

@@ -43,7 +43,7 @@ pub(super) fn edit<E: Form>(step: &Step<'_>, library: &PaintLibrary) -> Result<A
     edit.check_idle()?;
     for mixture in edit.mixtures_mut() {
         let known = library.check(mixture);
-        *mixture = known.map_err(|error| refused(maulstick_painting::paint_error(error)))?;
+        *mixture = known.map_err(refused)?;
     }
     Ok(Act::Edit(edit.into()))
 }

@@ -3,9 +3,8 @@
 use std::fs::File;
 use std::path::Path;
 
-use maulstick_canvas::EditError;
 use maulstick_document::{Access, Document, DocumentError, DocumentSettings, Opened, glance};
-use maulstick_painting::{Painting, Sequencer};
+use maulstick_painting::{EditError, Painting, Sequencer};
 pub use maulstick_recorder::paintings::wrong;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, RigConfig};

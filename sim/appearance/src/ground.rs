@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use maulstick_canvas::EditError;
+use crate::error::LookError;
 use maulstick_canvas::assets::{Assets, Colours, IMAGE, SPECTRUM, hash_of};
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::tile::TileId;
@@ -56,13 +56,13 @@ impl Ground {
     /// everywhere.
     ///
     /// # Errors
-    /// [`EditError`] for an unknown name.
+    /// [`LookError`] for an unknown name.
     pub fn called(
         name: &str,
         cells: [u32; 2],
         studio: &Studio,
         embedded: &Assets,
-    ) -> Result<Self, EditError> {
+    ) -> Result<Self, LookError> {
         if let Some(hash) = name.strip_prefix(SPECTRUM) {
             let internal = spectrum(embedded, hash)?.internal(&studio.surface());
             return Ok(Self::Even(studio.sample(&internal)));
@@ -250,44 +250,45 @@ impl fmt::Debug for PictureGround {
 /// Checks that there is a ground called `name`.
 ///
 /// # Errors
-/// [`EditError`] with what there is.
-pub fn check_ground(name: &str, embedded: &Assets) -> Result<(), EditError> {
+/// [`LookError`] with what there is.
+pub fn check_ground(name: &str, embedded: &Assets) -> Result<(), LookError> {
     if let Some(hash) = name.strip_prefix(SPECTRUM) {
         return spectrum(embedded, hash).map(drop);
     }
-    match name.strip_prefix(IMAGE) {
-        Some(hash) => embedded.colours(hash).map(drop),
-        None => ground_reflectance(name).map(drop),
+    if let Some(hash) = name.strip_prefix(IMAGE) {
+        embedded.colours(hash)?;
+        return Ok(());
     }
+    ground_reflectance(name).map(drop)
 }
 
 /// The internal reflectance of a ground that is the same everywhere.
 ///
 /// # Errors
-/// [`EditError`] with the names that there are.
-pub(crate) fn ground_reflectance(name: &str) -> Result<Spectrum, EditError> {
+/// [`LookError`] with the names that there are.
+pub(crate) fn ground_reflectance(name: &str) -> Result<Spectrum, LookError> {
     GROUNDS
         .iter()
         .find(|(ground, _)| *ground == name)
         .map(|(_, reflectance)| Spectrum::flat(*reflectance))
-        .ok_or_else(|| EditError::NoGround {
+        .ok_or_else(|| LookError::NoGround {
             name: name.to_owned(),
             known: GROUNDS.map(|(ground, _)| ground).to_vec(),
         })
 }
 
 /// Reads a table of nm,reflectance.
-fn parsed(bytes: &[u8]) -> Result<Reflectance, EditError> {
+fn parsed(bytes: &[u8]) -> Result<Reflectance, LookError> {
     let text = std::str::from_utf8(bytes).unwrap_or_default();
     Reflectance::parse(text.trim_start_matches('\u{feff}'))
-        .map_err(|error| EditError::Spectrum(error.to_string()))
+        .map_err(|error| LookError::Spectrum(error.to_string()))
 }
 
 /// Takes a spectrum in and returns its hash.
 ///
 /// # Errors
-/// [`EditError`] with the line where the text is no table of reflectances.
-pub fn add_spectrum(embedded: &mut Assets, text: &str) -> Result<String, EditError> {
+/// [`LookError`] with the line where the text is no table of reflectances.
+pub fn add_spectrum(embedded: &mut Assets, text: &str) -> Result<String, LookError> {
     parsed(text.as_bytes())?;
     let bytes: Arc<[u8]> = text.as_bytes().into();
     let hash = hash_of(&bytes);
@@ -298,8 +299,8 @@ pub fn add_spectrum(embedded: &mut Assets, text: &str) -> Result<String, EditErr
 /// The reflectances of a spectrum.
 ///
 /// # Errors
-/// [`EditError`] if no file has this hash, or it is a picture's.
-pub fn spectrum(embedded: &Assets, hash: &str) -> Result<Reflectance, EditError> {
+/// [`LookError`] if no file has this hash, or it is a picture's.
+pub fn spectrum(embedded: &Assets, hash: &str) -> Result<Reflectance, LookError> {
     parsed(embedded.bytes(hash)?)
 }
 

@@ -56,6 +56,7 @@ pub mod bands;
 pub mod blank_surface;
 pub mod colouring;
 pub mod display;
+mod error;
 pub mod ground;
 pub mod heap;
 pub mod lamp;
@@ -65,3 +66,4 @@ pub mod show_paint;
 
 pub use appearance::Appearance;
 pub use bakery::Bakery;
+pub use error::LookError;

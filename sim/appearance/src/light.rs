@@ -1,6 +1,6 @@
 //! The scene's light as input of the optics.
 
-use maulstick_canvas::EditError;
+use crate::error::LookError;
 use maulstick_optics::colour::apply;
 use maulstick_optics::{Illuminant, Observer, RuleKind, Spectrum, StudioSettings};
 use maulstick_types::scene::Light;
@@ -8,8 +8,8 @@ use maulstick_types::scene::Light;
 /// Optical settings of the light; its direction and strength are not among them.
 ///
 /// # Errors
-/// [`EditError`] for a light out of bounds, or a name of no illuminant.
-pub fn studio_settings(light: &Light) -> Result<StudioSettings, EditError> {
+/// [`LookError`] for a light out of bounds, or a name of no illuminant.
+pub fn studio_settings(light: &Light) -> Result<StudioSettings, LookError> {
     light.check()?;
     let spectrum: Result<[f64; maulstick_optics::spectrum::SAMPLES], _> =
         light.spectrum.as_slice().try_into();
@@ -21,7 +21,7 @@ pub fn studio_settings(light: &Light) -> Result<StudioSettings, EditError> {
             };
             found
                 .check()
-                .map_err(|dark| EditError::Dark(dark.to_string()))?;
+                .map_err(|dark| LookError::Dark(dark.to_string()))?;
             found
         }
         Err(_) => illuminant_named(&light.illuminant)?,
@@ -41,9 +41,9 @@ pub fn studio_settings(light: &Light) -> Result<StudioSettings, EditError> {
 /// One of the CIE's illuminants.
 ///
 /// # Errors
-/// [`EditError`] with the nearest name and all of them.
-pub fn illuminant_named(name: &str) -> Result<Illuminant, EditError> {
-    Illuminant::named(name).ok_or_else(|| EditError::NoIlluminant {
+/// [`LookError`] with the nearest name and all of them.
+pub fn illuminant_named(name: &str) -> Result<Illuminant, LookError> {
+    Illuminant::named(name).ok_or_else(|| LookError::NoIlluminant {
         name: name.to_owned(),
         known: maulstick_optics::cie::ILLUMINANTS.to_vec(),
     })

@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use sha2::{Digest as _, Sha256};
 
-use crate::error::EditError;
+use crate::error::CanvasError;
 
 /// Prefix of the name of a ground or a tooth that is made from a picture; its hash follows.
 pub const IMAGE: &str = "image:";
@@ -91,8 +91,8 @@ impl Assets {
     /// Takes a picture in and returns its hash.
     ///
     /// # Errors
-    /// [`EditError`] where the bytes are no PNG of the two kinds, or of too many pixels.
-    pub fn add(&mut self, bytes: Arc<[u8]>) -> Result<String, EditError> {
+    /// [`CanvasError`] where the bytes are no PNG of the two kinds, or of too many pixels.
+    pub fn add(&mut self, bytes: Arc<[u8]>) -> Result<String, CanvasError> {
         let hash = hash_of(&bytes);
         if !self.0.contains_key(&hash) {
             decode(&bytes)?;
@@ -122,24 +122,24 @@ impl Assets {
     /// The bytes of a picture or a spectrum.
     ///
     /// # Errors
-    /// [`EditError`] if no file has this hash.
-    pub fn bytes(&self, hash: &str) -> Result<&Arc<[u8]>, EditError> {
+    /// [`CanvasError`] if no file has this hash.
+    pub fn bytes(&self, hash: &str) -> Result<&Arc<[u8]>, CanvasError> {
         self.entry(hash).map(|entry| &entry.bytes)
     }
 
-    fn entry(&self, hash: &str) -> Result<&Entry, EditError> {
+    fn entry(&self, hash: &str) -> Result<&Entry, CanvasError> {
         self.0.get(hash).ok_or_else(|| {
             let digits = hash.bytes().all(|c| matches!(c, b'0'..=b'9' | b'a'..=b'f'));
             if digits && hash.len() == HASH_DIGITS {
-                EditError::NoPicture(hash.to_owned())
+                CanvasError::NoPicture(hash.to_owned())
             } else {
-                EditError::NoHash(hash.to_owned())
+                CanvasError::NoHash(hash.to_owned())
             }
         })
     }
 
     /// Decodes a picture, unless somebody still holds what was decoded before.
-    fn decoded(&self, hash: &str) -> Result<Decoded, EditError> {
+    fn decoded(&self, hash: &str) -> Result<Decoded, CanvasError> {
         let entry = self.entry(hash)?;
         let mut cached = entry.cached.lock().unwrap_or_else(PoisonError::into_inner);
         let held = match &*cached {
@@ -161,30 +161,30 @@ impl Assets {
     /// The pixels of a picture of colours.
     ///
     /// # Errors
-    /// [`EditError`] if no file has this hash, or it is one of heights.
-    pub fn colours(&self, hash: &str) -> Result<Arc<Colours>, EditError> {
+    /// [`CanvasError`] if no file has this hash, or it is one of heights.
+    pub fn colours(&self, hash: &str) -> Result<Arc<Colours>, CanvasError> {
         match self.decoded(hash)? {
             Decoded::Colours(colours) => Ok(colours),
-            Decoded::Heights(_) => Err(EditError::Heights),
+            Decoded::Heights(_) => Err(CanvasError::Heights),
         }
     }
 
     /// The pixels of a picture of heights.
     ///
     /// # Errors
-    /// [`EditError`] if no file has this hash, or it is one of colours.
-    pub fn heights(&self, hash: &str) -> Result<Arc<Heights>, EditError> {
+    /// [`CanvasError`] if no file has this hash, or it is one of colours.
+    pub fn heights(&self, hash: &str) -> Result<Arc<Heights>, CanvasError> {
         match self.decoded(hash)? {
             Decoded::Heights(heights) => Ok(heights),
-            Decoded::Colours(_) => Err(EditError::Colours),
+            Decoded::Colours(_) => Err(CanvasError::Colours),
         }
     }
 }
 
 /// Reads a PNG of either kind.
-fn decode(bytes: &[u8]) -> Result<Decoded, EditError> {
+fn decode(bytes: &[u8]) -> Result<Decoded, CanvasError> {
     let wrong =
-        |error: png::DecodingError| EditError::Picture(format!("this is no whole PNG: {error}"));
+        |error: png::DecodingError| CanvasError::Picture(format!("this is no whole PNG: {error}"));
     // Of the pixels' rows alone: what else a file has unpacks to anything.
     let limits = png::Limits { bytes: 1 << 26 };
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
@@ -194,7 +194,7 @@ fn decode(bytes: &[u8]) -> Result<Decoded, EditError> {
     let info = reader.info();
     let (width, height) = (info.width as usize, info.height as usize);
     if u64::from(info.width) * u64::from(info.height) > MOST_PIXELS {
-        return Err(EditError::Picture(format!(
+        return Err(CanvasError::Picture(format!(
             "a picture of {width}×{height} pixels is too large"
         )));
     }
@@ -223,7 +223,7 @@ fn decode(bytes: &[u8]) -> Result<Decoded, EditError> {
                 values: values.collect(),
             })))
         }
-        (colour, depth) => Err(EditError::Picture(format!(
+        (colour, depth) => Err(CanvasError::Picture(format!(
             "this PNG is {colour:?} of {} bits a channel",
             depth as u8
         ))),
@@ -300,7 +300,7 @@ pub(crate) mod tests {
     #[test]
     fn what_is_no_such_picture_is_refused() {
         let mut embedded = Assets::default();
-        let says = |error: EditError, word: &str| {
+        let says = |error: CanvasError, word: &str| {
             assert!(error.to_string().contains(word), "{error}");
         };
         says(embedded.add((*b"GIF89a").into()).expect_err("no"), "PNG");

@@ -62,9 +62,6 @@
 //!   them without knowing what they mean.
 //! - Bristles ride on the upper envelope of tooth and dry paint under parabolas of 28 mm radius, as stiff as a bristle
 //!   is along itself. Tooth is a seeded weave or grain, or comes from a picture.
-//!
-//! `EditError`, why an edit of a painting was refused, is data until a person reads it, and lives here so that every
-//! crate above can return it.
 
 pub mod assets;
 pub mod dry;
@@ -79,4 +76,4 @@ pub mod store;
 pub mod tile;
 pub mod window;
 
-pub use error::EditError;
+pub use error::CanvasError;

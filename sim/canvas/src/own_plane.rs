@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use crate::planes::TILE_CELLS;
+use maulstick_types::paint::TILE;
 
 /// Planes that a model keeps for each paint, at most: a layer of it each.
 pub const LAYERS_MOST: usize = 512;
@@ -61,7 +61,7 @@ impl OwnShape {
     /// Bytes of a tile.
     #[must_use]
     pub fn tile_bytes(&self) -> usize {
-        TILE_CELLS * self.cell_bytes()
+        TILE * TILE * self.cell_bytes()
     }
 }
 

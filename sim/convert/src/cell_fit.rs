@@ -7,8 +7,9 @@ use maulstick_canvas::quantum::QUANTUM_M;
 
 use crate::cell::{CellColour, FilmCell, VolumeCell};
 use crate::fit::{Fitter, Found, Wanted, whole};
+use crate::masstones::Masstones;
+use crate::palette::Palette;
 use crate::shown::{Kind, Paints, Shown};
-use crate::tile::Converter;
 
 /// Distance, ΔE₀₀, from which a fit is tried from elsewhere, too.
 const FAR: f64 = 1.0;
@@ -37,9 +38,17 @@ pub(crate) struct Fitted<'a> {
     pub(crate) over: f32,
 }
 
+/// What paint is converted to.
+#[derive(Debug)]
+pub(crate) struct Target<'a> {
+    pub(crate) palette: Palette<'a>,
+    pub(crate) paints: Paints,
+    pub(crate) masstones: Option<Masstones>,
+}
+
 /// Fits of cells.
 pub(crate) struct CellFit<'a> {
-    converter: &'a Converter<'a>,
+    target: &'a Target<'a>,
     fitter: Fitter,
     /// As `fitter`, with what lies below as one more paint.
     blender: Fitter,
@@ -54,10 +63,10 @@ pub(crate) struct CellFit<'a> {
 }
 
 impl<'a> CellFit<'a> {
-    pub(crate) fn new(converter: &'a Converter<'a>) -> Self {
-        let paints = converter.palette.slots.len();
+    pub(crate) fn new(target: &'a Target<'a>) -> Self {
+        let paints = target.palette.slots.len();
         Self {
-            converter,
+            target,
             fitter: Fitter::new(paints),
             blender: Fitter::new(paints + 1),
             asked: Asked::default(),
@@ -90,7 +99,7 @@ impl<'a> CellFit<'a> {
         cell: usize,
     ) -> Fitted<'_> {
         let asked = &mut self.asked;
-        asked.colour = wanted.lab(&self.converter.palette, cell);
+        asked.colour = wanted.lab(&self.target.palette, cell);
         asked.under.clear();
         asked.opacity = kind.opacity().into();
         match under {
@@ -101,7 +110,7 @@ impl<'a> CellFit<'a> {
             Shown::Volumes(rgb) => {
                 let values = rgb.iter().map(|plane| f64::from(plane[cell]));
                 asked.under.extend(values);
-                if let Paints::Volumes(volumes) = &self.converter.to {
+                if let Paints::Volumes(volumes) = &self.target.paints {
                     asked.hides = kind.hides(volumes.of, cell, asked.all as f32).into();
                 }
             }
@@ -121,9 +130,9 @@ impl<'a> CellFit<'a> {
         let share = |count: &f32| f64::from(*count) / asked.all as f64;
         self.own.clear();
         self.own.extend(asked.counts.iter().map(share));
-        let palette = &self.converter.palette;
+        let palette = &self.target.palette;
         self.over = 0.0;
-        match &self.converter.to {
+        match &self.target.paints {
             Paints::Films => {
                 let film = FilmCell {
                     palette,
@@ -168,7 +177,7 @@ impl<'a> CellFit<'a> {
         (paints, under): (&[[f64; 3]], [f64; 3]),
         most: f64,
     ) -> f64 {
-        let palette = &self.converter.palette;
+        let palette = &self.target.palette;
         let encoded: Vec<[f64; 3]> = paints.iter().copied().chain([under]).collect();
         let volume = VolumeCell {
             palette,
@@ -208,7 +217,7 @@ impl<'a> CellFit<'a> {
             std::mem::swap(&mut self.found, &mut self.other);
         }
         if self.found.delta_e > FAR
-            && let Some(masstones) = &self.converter.masstones
+            && let Some(masstones) = &self.target.masstones
         {
             self.start.resize(self.own.len(), 0.0);
             masstones.nearest(wanted.colour, &mut self.start);

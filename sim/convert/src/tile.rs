@@ -11,7 +11,7 @@ use maulstick_optics::Under;
 use maulstick_optics::colour::delta_e_2000;
 use maulstick_types::paint::TILE;
 
-use crate::cell_fit::CellFit;
+use crate::cell_fit::{CellFit, Target};
 use crate::masstones::Masstones;
 use crate::palette::Palette;
 use crate::shown::{Kind, Paints, Shown};
@@ -104,12 +104,10 @@ pub struct Converted {
 /// Conversion of tiles from one colouring to another.
 #[derive(Debug)]
 pub struct Converter<'a> {
-    pub(crate) palette: Palette<'a>,
     /// True if both colourings are the same.
     is_same: bool,
     from: Paints,
-    pub(crate) to: Paints,
-    pub(crate) masstones: Option<Masstones>,
+    target: Target<'a>,
 }
 
 impl<'a> Converter<'a> {
@@ -121,9 +119,11 @@ impl<'a> Converter<'a> {
         Self {
             is_same: from == to,
             from: Paints::of(from, &palette),
-            to: Paints::of(to, &palette),
-            palette,
-            masstones,
+            target: Target {
+                paints: Paints::of(to, &palette),
+                palette,
+                masstones,
+            },
         }
     }
 
@@ -140,9 +140,9 @@ impl<'a> Converter<'a> {
             converted.dry = dry.collect();
             return converted;
         }
-        let palette = &self.palette;
+        let palette = &self.target.palette;
         let mut before = Shown::ground(&self.from, palette, ground.under);
-        let mut after = Shown::ground(&self.to, palette, ground.under);
+        let mut after = Shown::ground(&self.target.paints, palette, ground.under);
         for layer in layers.iter().rev() {
             let planes = layer.planes.get();
             let opacity = palette.look.opacity(layer.number);
@@ -154,7 +154,12 @@ impl<'a> Converter<'a> {
                 &dry(self.from.wet_over(&planes)),
             );
             let fitted = self.layer(&planes, &before, &after, &dry(None), ground.stays);
-            after.lay(&self.to, palette, &fitted, &dry(self.to.wet_over(&fitted)));
+            after.lay(
+                &self.target.paints,
+                palette,
+                &fitted,
+                &dry(self.target.paints.wet_over(&fitted)),
+            );
             converted.dry.push(fitted);
         }
         converted.dry.reverse();
@@ -162,7 +167,7 @@ impl<'a> Converter<'a> {
         if !wet.is_empty() {
             before.lay(&self.from, palette, &wet, &Kind::Wet);
             converted.wet = self.layer(&wet, &before, &after, &Kind::Wet, ground.stays);
-            after.lay(&self.to, palette, &converted.wet, &Kind::Wet);
+            after.lay(&self.target.paints, palette, &converted.wet, &Kind::Wet);
         }
         converted.distance = self.distance(tile, &before, &after);
         converted
@@ -178,7 +183,8 @@ impl<'a> Converter<'a> {
             if is_dry || wet.iter().any(|(_, plane)| plane[cell] > 0.0) {
                 let film: f32 = wet.iter().map(|(_, plane)| plane[cell]).sum();
                 let film = film + dry.as_ref().map_or(0.0, |dry| dry[cell]);
-                let [one, other] = [before, after].map(|shown| shown.lab(&self.palette, cell));
+                let [one, other] =
+                    [before, after].map(|shown| shown.lab(&self.target.palette, cell));
                 let delta_e = delta_e_2000(one, other);
                 distance.add(&Distance {
                     sum: delta_e,
@@ -205,7 +211,7 @@ impl<'a> Converter<'a> {
         kind: &Kind,
         stays: &[usize],
     ) -> Planes {
-        let slots = &self.palette.slots;
+        let slots = &self.target.palette.slots;
         let plane_of = |slot: &usize| {
             let found = planes.iter().find(|(own, _)| own == slot);
             found.map(|(_, plane)| plane)
@@ -217,7 +223,7 @@ impl<'a> Converter<'a> {
             .collect();
         let mut left_alone = [false; TILE_CELLS];
         stays.iter().for_each(|cell| left_alone[*cell] = true);
-        let mut fit = CellFit::new(self);
+        let mut fit = CellFit::new(&self.target);
         let mut over = vec![0.0; TILE_CELLS];
         for cell in (0..TILE_CELLS).filter(|cell| !left_alone[*cell]) {
             let all = fit.take(&own, cell);
@@ -249,7 +255,7 @@ impl<'a> Converter<'a> {
         by_slot.sort_by_key(|(slot, _)| *slot);
         by_slot.retain(|(_, plane)| plane.iter().any(|count| *count != 0.0));
         let fitted: Planes = by_slot.into_iter().collect();
-        match &self.to {
+        match &self.target.paints {
             Paints::Volumes(volumes) if over.iter().any(|over| *over > 0.0) => {
                 (volumes.of.noted)(fitted, &over)
             }

@@ -1,6 +1,6 @@
 //! Errors of imports.
 
-use maulstick_canvas::EditError;
+use maulstick_painting::EditError;
 
 /// Most pixels of a picture across and down.
 pub const MOST_SIDE: u32 = 20_000;

@@ -253,13 +253,7 @@ impl Contact {
         let (pressing, normal) = self.pressing(handle, &height, across, max_stiffness);
         let velocity = handle.velocity - n * handle.velocity.dot(n);
         let still_n = self.sticking * normal.force_n * ramp;
-        let leaning = match &self.law {
-            Law::Local(local) => {
-                let force = local.force(handle.position, max_stiffness);
-                (force - n * force.dot(n)).clamp_length_max(still_n)
-            }
-            _ => DVec3::ZERO,
-        };
+        let leaning = self.leaning(handle, still_n, max_stiffness);
         // What leans already sticks the less.
         let still_n = still_n - leaning.length();
         let moving_n = (self.friction * normal.force_n * ramp).min(still_n);
@@ -289,6 +283,15 @@ impl Contact {
             lever: (tip - handle.position) * ramp,
             ..none
         }
+    }
+
+    /// Force of a local model along the surface, at most `most_n`.
+    fn leaning(&self, handle: &HandleState, most_n: f64, max_stiffness: f64) -> DVec3 {
+        let Law::Local(local) = &self.law else {
+            return DVec3::ZERO;
+        };
+        let (n, force) = (self.normal, local.force(handle.position, max_stiffness));
+        (force - n * force.dot(n)).clamp_length_max(most_n)
     }
 
     /// The force on the hand, N; stiffness never exceeds `max_stiffness`, N/m.

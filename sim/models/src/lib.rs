@@ -4,10 +4,12 @@
 //! let impasto = maulstick_models::model_called("impasto")?;
 //! assert_eq!((impasto.make)().name(), "impasto");
 //! assert!(maulstick_models::model_called("oil").is_err());
-//! # Ok::<(), maulstick_canvas::EditError>(())
+//! # Ok::<(), maulstick_models::NoModel>(())
 //! ```
 
-use maulstick_canvas::EditError;
+mod error;
+
+pub use error::NoModel;
 pub use maulstick_model_entry::{AutoRole, ModelEntry, SheetError, SheetPanel};
 
 /// All paint models; the first is that of a surface for which nothing else is said.
@@ -29,10 +31,10 @@ pub fn model_names() -> impl Iterator<Item = &'static str> + Clone {
 /// The model of this name.
 ///
 /// # Errors
-/// [`EditError::NoModel`] with the known names.
-pub fn model_called(name: &str) -> Result<&'static ModelEntry, EditError> {
+/// [`NoModel`] with the known names.
+pub fn model_called(name: &str) -> Result<&'static ModelEntry, NoModel> {
     let found = MODELS.iter().find(|entry| entry.name == name);
-    found.ok_or_else(|| EditError::NoModel {
+    found.ok_or_else(|| NoModel {
         name: name.to_owned(),
         known: model_names().collect(),
     })
@@ -75,7 +77,7 @@ mod tests {
 
     #[test]
     fn an_unknown_name_comes_back_with_the_known_ones() {
-        let unknown = EditError::NoModel {
+        let unknown = NoModel {
             name: "impatso".to_owned(),
             known: model_names().collect(),
         };

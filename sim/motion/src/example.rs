@@ -353,10 +353,8 @@ fn hatches(strokes: &[Stroke], paths: &[Vec<DVec2>], width_m: f64) -> Result<Pas
     } else {
         noise(&second_differences(&rows))
     };
-    let shortest = marks
-        .iter()
-        .map(Mark::length_m)
-        .fold(f64::INFINITY, f64::min);
+    let lengths = marks.iter().map(Mark::length_m);
+    let shortest = lengths.fold(f64::INFINITY, f64::min);
     Ok(Pass {
         kind: Kind::Hatches,
         frame,

@@ -4,20 +4,12 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
-use maulstick_canvas::assets::Assets;
-use maulstick_canvas::page::{Page, Pager};
-use maulstick_canvas::tile::Version;
+use maulstick_canvas::page::Page;
 use maulstick_model::brush::load::BrushLoad;
-use maulstick_optics::PaintLibrary;
 
 use crate::history::{Step, TilePlace, TileRef};
-use crate::painting::{Named, Painting, Restored};
-use crate::sequencer::Sequencer;
+use crate::painting::Named;
 use crate::snapshot::{PaintingSnapshot, SequencerSnapshot};
-
-/// Bytes of a record at most, unless a painting says otherwise.
-pub const RECORD_QUOTA: u64 = 512 << 20;
 
 /// A whole painting at a place of its journal, without the steps that were finished before.
 #[derive(Clone, Debug)]
@@ -36,42 +28,6 @@ pub struct Beginning {
     pub open: Vec<Step>,
     /// Its versions.
     pub named: Vec<Named>,
-}
-
-impl Beginning {
-    /// The painting as it was then, to accept its records again; `assets` are the pictures and spectra of the painting,
-    /// later ones among them.
-    ///
-    /// # Errors
-    /// [`EditError`] if the stored parts do not fit together.
-    pub fn sequencer(
-        self: &Arc<Self>,
-        assets: Assets,
-        library: PaintLibrary,
-        pager: Arc<Pager>,
-    ) -> Result<Sequencer, EditError> {
-        let number = self.painting.versions;
-        let tiles = self.tiles.iter();
-        let restored = Restored {
-            tiles: tiles
-                .map(|(place, tile)| {
-                    let tile = tile.clone();
-                    (*place, Version { number, tile })
-                })
-                .collect(),
-            loads: self.loads.clone(),
-            steps: self.open.clone(),
-            named: self.named.clone(),
-            embedded: assets,
-            kept: PaintingSnapshot {
-                undone: Vec::new(),
-                ..self.painting.clone()
-            },
-            beginning: Some(Arc::clone(self)),
-        };
-        let painting = Painting::restore(restored, library, pager)?;
-        Ok(Sequencer::restored(painting, self.sequencer.clone()))
-    }
 }
 
 /// Change of a record at a checkpoint.

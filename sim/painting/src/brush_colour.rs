@@ -144,8 +144,8 @@ mod tests {
     }
 
     #[test]
-    fn a_brush_loaded_beside_shows_both_paints_and_a_clean_one_its_hair() {
-        let mut bench = bench();
+    fn a_clean_brush_shows_its_hair() {
+        let bench = bench();
         let under = hair(bench.carried.hair, &bench.studio);
         let own = bench
             .carried
@@ -165,21 +165,17 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn a_brush_loaded_beside_shows_both_paints() {
+        let mut bench = bench();
+        let under = hair(bench.carried.hair, &bench.studio);
         let load = Arc::make_mut(&mut bench.carried.load);
-        load.fill(
-            &bench.head,
-            &bench.traits,
-            &[(0, 1.0)],
-            None,
-            (Half::Left, 0),
-        );
-        load.fill(
-            &bench.head,
-            &bench.traits,
-            &[(1, 1.0)],
-            None,
-            (Half::Right, 0),
-        );
+        for (slot, half) in [(0, Half::Left), (1, Half::Right)] {
+            let slots = [(slot, 1.0)];
+            load.fill(&bench.head, &bench.traits, &slots, None, (half, 0));
+        }
         let loaded = bench.carried.look(&bench.studio, &under);
         assert!(
             (0.8..=1.0).contains(&loaded.load_share),

@@ -192,28 +192,17 @@ pub(crate) fn balance(
         0 => 0.0,
         count => -(count as f64) * quantum_m3,
     };
-    let mut accounts_m3 = BTreeMap::from([
-        ("tube", negative(sum(&ledger.tube))),
-        ("mode", from_mode(ledger.mode.iter().sum())),
-    ]);
-    accounts_m3.extend(
-        accounts
+    let row = |tube: u64, mode: i64, found: &dyn Fn(&Counts) -> u64| {
+        let given = [("tube", negative(tube)), ("mode", from_mode(mode))];
+        let found = accounts
             .iter()
-            .map(|(name, counts)| (*name, volume(sum(counts)))),
-    );
-    let mut paints_m3 = BTreeMap::new();
-    for (slot, name) in names.iter().enumerate().take(SLOTS) {
-        let mut row = BTreeMap::from([
-            ("tube", negative(ledger.tube[slot])),
-            ("mode", from_mode(ledger.mode[slot])),
-        ]);
-        row.extend(
-            accounts
-                .iter()
-                .map(|(account, counts)| (*account, volume(counts[slot]))),
-        );
-        paints_m3.insert(name.clone(), row);
-    }
+            .map(|(name, counts)| (*name, volume(found(counts))));
+        given.into_iter().chain(found).collect()
+    };
+    let paints_m3 = names.iter().enumerate().take(SLOTS).map(|(slot, name)| {
+        let own = row(ledger.tube[slot], ledger.mode[slot], &|counts| counts[slot]);
+        (name.clone(), own)
+    });
     // Slot by slot, so that too much of one paint cannot hide too little of another.
     let quanta_missing = (0..SLOTS)
         .map(|slot| {
@@ -223,8 +212,8 @@ pub(crate) fn balance(
         .max_by_key(|missing| missing.abs())
         .unwrap_or(0);
     LedgerReport {
-        accounts_m3,
-        paints_m3,
+        accounts_m3: row(sum(&ledger.tube), ledger.mode.iter().sum(), &sum),
+        paints_m3: paints_m3.collect(),
         quanta_missing,
         steps: tallies.steps,
         footprint_cells: tallies.footprint_cells,

@@ -6,7 +6,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`Painting`] | surfaces, brushes, what is done to them |
+//! | [`Painting`] | a clock and a workbench: the desk with its surfaces, brushes, backend, accounts, past |
 //! | [`sequencer`] | the order of states and commands |
 //! | [`setup`] | the scene of a new painting |
 //! | [`ledger`], [`history`] | the books, undo |
@@ -16,6 +16,7 @@
 //! | [`snapshot`] | the part of a document that is not tiles |
 //! | [`picture`] | pictures of its surfaces |
 //! | [`brush_colour`] | the paint on a brush as it is shown |
+//! | [`EditError`] | why an edit is refused, data until a person reads it |
 //!
 //! A film of paint, undone; the books are even to the quantum both times:
 //!
@@ -80,7 +81,8 @@
 //!   brushes and history.
 //! - Backend: processor, or a graphics device whose steps stay unsettled until somebody reads them; surfaces with wells
 //!   are the processor's.
-//! - An edit that takes or dries wet paint stops a drying (`clock.stop`), leaves the paint of wells
+//! - An edit reaches the parts that it changes: `bench` and `clock`. One that takes or dries wet paint stops a drying
+//!   (`clock.stop`), leaves the paint of wells
 //!   (`SurfaceState::staying`) and decides about planes of a model's own (`Planes::own`). One that moves paint has open
 //!   windows written back first; `begin_step` ends open steps.
 
@@ -99,7 +101,7 @@ pub mod snapshot;
 
 pub use beginning::{Beginning, RecordChange};
 pub use edits::Applied;
-pub use error::paint_error;
+pub use error::{BrushError, EditError, HistoryError, LayerError, SurfaceError, VersionError};
 pub use painting::{Checkpoint, LaidTile, NOW, Named, Painting, Restored, UnderBrush, Wetness};
 pub use sequencer::{Effect, Sequencer};
 pub use setup::PaintingSetup;

@@ -8,14 +8,14 @@ pub use records::{Accepted, Record};
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use maulstick_canvas::EditError;
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::reply_cache::ReplyCache;
-use maulstick_types::command::{Command, CommandRequest, Outcome, TakeCommand};
-use maulstick_types::paint::{Decision, Entry, JournalEntry};
+use maulstick_types::command::{Command, CommandRequest, Detail, Outcome, TakeCommand};
+use maulstick_types::paint::{Decision, Entry, JournalEntry, StepName};
 use maulstick_types::{Flags, Header, Mixture, Origin};
 
 use crate::edits::Applied;
+use crate::error::{BrushError, EditError};
 use crate::painting::Painting;
 use crate::snapshot::{CutStates, TakeSnapshot};
 
@@ -30,6 +30,11 @@ pub enum Effect {
         ledger: Option<String>,
     },
 }
+
+/// Report of an undo of a stroke of which nothing was painted.
+const NOT_PAINTED: Detail = Detail::Step {
+    name: StepName::Unpainted,
+};
 
 /// A reply to the command `number` of `client`.
 #[derive(Clone, Debug, PartialEq)]
@@ -155,10 +160,11 @@ impl Sequencer {
     ) -> (Vec<Replied>, Result<(), EditError>) {
         let may_paint = self.may_paint(brush, header, state);
         let result = if let Some(fault) = state.fault() {
-            Err(EditError::State {
+            Err(BrushError::State {
                 brush: brush.to_owned(),
                 fault,
-            })
+            }
+            .into())
         } else if !may_paint {
             self.ignored += 1;
             Ok(())

@@ -1,9 +1,9 @@
 //! The scene of a new painting.
 
+use crate::error::{EditError, SurfaceError};
 use maulstick_appearance::ground::check_ground;
 use maulstick_appearance::light::studio_settings;
 use maulstick_brush::palette_place::{Side, beside};
-use maulstick_canvas::EditError;
 use maulstick_canvas::assets::{Assets, IMAGE};
 use maulstick_canvas::relief::Relief;
 use maulstick_canvas::relief::tooth::Tooth;
@@ -13,7 +13,6 @@ use maulstick_types::limits::CELLS_M;
 use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
 use maulstick_types::{Mixture, Pose};
 
-use crate::error::paint_error;
 use maulstick_models::{MODELS, model_called};
 
 /// Paints in the wells of a new palette.
@@ -104,7 +103,7 @@ impl PaintingSetup {
         relief_called(&self.tooth, self.tooth_seed, self.cell_m, &self.embedded)?;
         studio_settings(&self.light)?;
         for mixture in &self.wells {
-            library.check(mixture).map_err(paint_error)?;
+            library.check(mixture)?;
         }
         Ok(())
     }
@@ -196,14 +195,15 @@ pub fn wells_of(mixtures: &[Mixture], cells: [u32; 2], cell_m: f64) -> Vec<Well>
 /// Checks the size of a surface and of its cells.
 ///
 /// # Errors
-/// [`EditError`] with what is possible.
-pub(crate) fn check_size(cells: [u32; 2], cell_m: f64) -> Result<(), EditError> {
+/// [`SurfaceError`] with what is possible.
+pub(crate) fn check_size(cells: [u32; 2], cell_m: f64) -> Result<(), SurfaceError> {
     if cells.iter().any(|cells| !(1..=65_536).contains(cells)) {
-        return Err(EditError::Cells(cells));
+        return Err(SurfaceError::Cells(cells));
     }
-    match CELLS_M.contains(&cell_m) {
-        true => Ok(()),
-        false => Err(EditError::CellSize(cell_m * 1e3)),
+    if CELLS_M.contains(&cell_m) {
+        Ok(())
+    } else {
+        Err(SurfaceError::CellSize(cell_m * 1e3))
     }
 }
 
@@ -221,7 +221,7 @@ pub fn relief_called(
         let tooth = PictureTooth::called(name, cell_m, embedded)?;
         return Ok(Relief::pictured(tooth, cell_m));
     }
-    let tooth = Tooth::new(name, seed, cell_m).ok_or_else(|| EditError::NoTooth {
+    let tooth = Tooth::new(name, seed, cell_m).ok_or_else(|| SurfaceError::NoTooth {
         name: name.to_owned(),
         known: Tooth::names().collect(),
     })?;

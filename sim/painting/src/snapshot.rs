@@ -9,7 +9,6 @@ use maulstick_types::scene::Scene;
 use maulstick_types::{Mixture, Origin};
 use serde::{Deserialize, Serialize};
 
-use crate::beginning::RECORD_QUOTA;
 use crate::clock::Clock;
 use crate::ledger::Ledger;
 
@@ -74,22 +73,41 @@ pub struct PaintingSnapshot {
     pub has_changed_surfaces: bool,
     /// The version from which the painter goes on.
     pub line: Option<String>,
+    /// Work that was done.
+    #[serde(flatten)]
+    pub work: WorkSnapshot,
+    /// Limits of what is kept of the past.
+    #[serde(flatten)]
+    pub quotas: QuotaSnapshot,
+    /// Time elapsed, and dryings in progress.
+    pub clock: Clock,
+    /// Rows that the document has of it; `None` in paintings from before rows were counted.
+    pub rows: Option<RowCounts>,
+}
+
+/// Work that was done on a painting.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WorkSnapshot {
     /// Steps of the paint model.
     pub steps: u64,
     /// Cells of its footprints.
     pub footprint_cells: u64,
     /// Time of the first and of the last state, ns.
     pub span_ns: Option<(u64, u64)>,
+}
+
+/// Limits of what is kept of a painting's past.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct QuotaSnapshot {
     /// Most bytes of the history.
     pub quota: u64,
     /// Most bytes of the record; 0 keeps none.
     #[serde(default = "default_record_quota")]
     pub record_quota: u64,
-    /// Time elapsed, and dryings in progress.
-    pub clock: Clock,
-    /// Rows that the document has of it; `None` in paintings from before rows were counted.
-    pub rows: Option<RowCounts>,
 }
+
+/// Bytes of a record at most, unless a painting says otherwise.
+pub(crate) const RECORD_QUOTA: u64 = 512 << 20;
 
 fn default_record_quota() -> u64 {
     RECORD_QUOTA

@@ -5,10 +5,9 @@
 use std::sync::mpsc;
 
 use maulstick_brush::{BrushFile, BrushModel};
-use maulstick_canvas::EditError;
 use maulstick_num::fork_join::with_cores_beyond;
 use maulstick_painting::clock::TICKS_A_SECOND;
-use maulstick_painting::{Applied, Painting, Sequencer};
+use maulstick_painting::{Applied, EditError, Painting, Sequencer};
 use maulstick_types::Edit;
 use maulstick_types::brush::BrushState;
 use maulstick_types::stylus::StylusSample;

@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::planes::Planes;
 use maulstick_canvas::tile::Tile;
 use maulstick_document::{Document, DocumentError, Opened};
 use maulstick_painting::history::TilePlace;
 use maulstick_painting::sequencer::Record;
-use maulstick_painting::{Painting, Sequencer};
+use maulstick_painting::{EditError, Painting, Sequencer};
 
 /// Bytes of pages in memory, beyond which the oldest steps are merged: an undo of more than the newest sixteen may then
 /// take back more than it did.

@@ -244,7 +244,7 @@ fn the_mixing_area_takes_and_gives_paint() {
 
 impl Hand {
     /// Lays other wells on the palette, as a client of the paint node would.
-    fn lay(&mut self, wells: Vec<Well>) -> Result<(), maulstick_canvas::EditError> {
+    fn lay(&mut self, wells: Vec<Well>) -> Result<(), maulstick_painting::EditError> {
         let surface = PALETTE;
         self.offline.edit(Wells::new(surface, wells)?).map(drop)
     }

@@ -250,7 +250,7 @@ fn a_record_keeps_to_its_limit() {
     let (_document, opened) = read(&path);
     let serial = opened.beginning().expect("a record").sequencer.serial;
     assert!(serial > 20, "{serial}: it began anew");
-    assert_eq!(opened.snapshot().record_quota, limit, "remembered");
+    assert_eq!(opened.snapshot().quotas.record_quota, limit, "remembered");
     drop((_document, opened));
     assert_eq!(again(&path, None), stored(&path));
 }

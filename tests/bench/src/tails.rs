@@ -50,7 +50,7 @@ pub(crate) fn run(
     let brush = brush.scaled_to(BRUSH_MM).map_err(fault)?;
     let loads: Result<Vec<_>, _> = loads.iter().map(|load| load.parse()).collect();
     let loads = loads.map_err(|error| fault(format!("{error}")))?;
-    let refused = |refusal: maulstick_canvas::EditError| fault(refusal);
+    let refused = |refusal: maulstick_painting::EditError| fault(refusal);
     let mut offline = Offline::new(painting, "main", brush, DEPTH_SHARE, loads).map_err(refused)?;
     let samples: Vec<_> = take
         .samples

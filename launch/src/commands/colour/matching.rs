@@ -6,7 +6,6 @@ use clap::Args;
 use maulstick_optics::colour::srgb_decode;
 use maulstick_optics::matching::{Proposal, Proposals, propose};
 use maulstick_optics::{Paint, PaintLibrary, Viewing};
-use maulstick_painting::paint_error;
 use maulstick_rig::UserError;
 use serde_json::{Value, json};
 
@@ -96,7 +95,7 @@ impl MatchOptions {
         for name in &self.paint {
             let paint = library
                 .find(name)
-                .map_err(|error| refused(paint_error(error)).at(format!("--paint {name:?}")))?;
+                .map_err(|error| refused(error).at(format!("--paint {name:?}")))?;
             if paints.iter().all(|other| other.name != paint.name) {
                 paints.push(paint.clone());
             }

@@ -5,12 +5,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use maulstick_canvas::EditError;
 use maulstick_document::DocumentError;
 use maulstick_models::{model_called, model_names};
 use maulstick_num::fork_join::with_cores_beyond;
-use maulstick_painting::Applied;
 use maulstick_painting::edits::Convert;
+use maulstick_painting::{Applied, EditError, SurfaceError};
 use maulstick_rig::files::{Kind, check_writable};
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::Autosave;
@@ -48,7 +47,7 @@ pub(super) fn run(options: &ConvertOptions) -> Result<i32, UserError> {
     }
     let surface = if options.palette { PALETTE } else { CANVAS };
     let refuse = |error: EditError| refused(error).at(path.display().to_string());
-    let model = model_called(&options.model).map_err(refuse)?;
+    let model = model_called(&options.model).map_err(|unknown| refuse(unknown.into()))?;
     // Says so where it is open in another program.
     let (document, opened) = read(path)?;
     let mut surfaces = opened.snapshot().scene.surfaces.iter();
@@ -56,7 +55,7 @@ pub(super) fn run(options: &ConvertOptions) -> Result<i32, UserError> {
     drop(opened);
     document.close().map_err(|error| wrong(path, &error))?;
     if has_it {
-        return Err(refuse(EditError::SameModel(model.name)));
+        return Err(refuse(SurfaceError::SameModel(model.name).into()));
     }
     check_writable(output, Kind::Own).map_err(|error| UserError::writing(output, &error))?;
     let beside = output.parent().filter(|own| !own.as_os_str().is_empty());

@@ -334,6 +334,12 @@ fn surface(skin: &Surface, joints: usize) -> Result<(), BrushError> {
         pairs <= 8 * vertices,
         "at most 8 joints a vertex",
     )?;
+    faces(skin)?;
+    weights(skin, joints)
+}
+
+fn faces(skin: &Surface) -> Result<(), BrushError> {
+    let vertices = skin.vertices_mm.len();
     for face in &skin.faces {
         must(
             "surface.faces",
@@ -350,6 +356,10 @@ fn surface(skin: &Surface, joints: usize) -> Result<(), BrushError> {
             )?;
         }
     }
+    Ok(())
+}
+
+fn weights(skin: &Surface, joints: usize) -> Result<(), BrushError> {
     for weights in &skin.weights {
         for (joint, weight) in weights {
             must(

@@ -217,10 +217,8 @@ fn spines(
     let mut children = vec![Vec::new(); joints.len()];
     let mut roots = Vec::new();
     for (i, joint) in joints.iter().enumerate() {
-        match tree
-            .ancestors(joint.index())
-            .find_map(|above| numbers[above])
-        {
+        let mut ancestors = tree.ancestors(joint.index());
+        match ancestors.find_map(|above| numbers[above]) {
             Some(above) => children[above].push(i),
             None => roots.push(i),
         }

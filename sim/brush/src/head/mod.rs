@@ -108,6 +108,18 @@ fn smoothstep(t: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
+/// Weights of the strips for each spine.
+fn weights_by_spine(spines: &[DVec2], roots: &[DVec2]) -> Vec<Vec<f32>> {
+    let mut weights = vec![Vec::with_capacity(roots.len()); spines.len()];
+    for root in roots {
+        let row = weights_of(spines, nearest_in_hull(spines, *root));
+        for (plane, weight) in weights.iter_mut().zip(row) {
+            plane.push(weight as f32);
+        }
+    }
+    weights
+}
+
 impl Head {
     /// The head of a brush file.
     #[must_use]
@@ -117,13 +129,6 @@ impl Head {
         let mut random = Random::new(file.strips.seed);
         let roots = place::roots(file, &spines, &mut random);
         let count = roots.len();
-        let mut weights = vec![Vec::with_capacity(count); spines.len()];
-        for root in &roots {
-            let row = weights_of(&spines, nearest_in_hull(&spines, *root));
-            for (plane, weight) in weights.iter_mut().zip(row) {
-                plane.push(weight as f32);
-            }
-        }
         let curves: Vec<Curve> = tuft
             .roots
             .iter()
@@ -167,7 +172,7 @@ impl Head {
                 let at = place_along(station);
                 [file.radius_m(at), file.half_thickness_m(at)].map(|half| half as f32)
             }),
-            weights,
+            weights: weights_by_spine(&spines, &roots),
             spine_roots: tuft.roots,
         };
         head.lay(file, &roots, &curves);

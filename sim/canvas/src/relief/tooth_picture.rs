@@ -9,7 +9,7 @@ use std::sync::Arc;
 use maulstick_types::paint::TILE;
 
 use crate::assets::{Assets, Heights, IMAGE};
-use crate::error::EditError;
+use crate::error::CanvasError;
 use crate::planes::TILE_CELLS;
 use crate::tile::TileId;
 
@@ -44,9 +44,9 @@ impl ToothName {
     /// Reads a name that begins with [`IMAGE`].
     ///
     /// # Errors
-    /// [`EditError`] with what is wrong with it.
-    pub fn parse(name: &str) -> Result<Self, EditError> {
-        let wrong = |fault| EditError::ToothName {
+    /// [`CanvasError`] with what is wrong with it.
+    pub fn parse(name: &str) -> Result<Self, CanvasError> {
+        let wrong = |fault| CanvasError::ToothName {
             name: name.to_owned(),
             fault,
         };
@@ -84,8 +84,8 @@ impl PictureTooth {
     /// The tooth called `name` on cells of `cell_m`.
     ///
     /// # Errors
-    /// [`EditError`] where the name is wrong, or there is no such picture.
-    pub fn called(name: &str, cell_m: f64, embedded: &Assets) -> Result<Self, EditError> {
+    /// [`CanvasError`] where the name is wrong, or there is no such picture.
+    pub fn called(name: &str, cell_m: f64, embedded: &Assets) -> Result<Self, CanvasError> {
         let name = ToothName::parse(name)?;
         let pixels = embedded.heights(&name.hash)?;
         Ok(Self {

@@ -8,7 +8,6 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::assets::Assets;
 use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::planes::Planes;
@@ -17,7 +16,7 @@ use maulstick_optics::PaintLibrary;
 use maulstick_painting::history::{Step, TilePlace, TileRef};
 use maulstick_painting::sequencer::Record;
 use maulstick_painting::snapshot::{PaintingSnapshot, SequencerSnapshot};
-use maulstick_painting::{Beginning, Named, Painting, Restored, Sequencer};
+use maulstick_painting::{Beginning, EditError, Named, Painting, Restored, Sequencer};
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::Scene;
 use rusqlite::{OptionalExtension as _, params};
@@ -140,7 +139,8 @@ impl Opened {
             embedded,
             ..
         } = self.restored;
-        let begun = beginning.map(|begun| begun.sequencer(embedded, self.library, self.pager));
+        let begun =
+            beginning.map(|begun| Sequencer::begun(begun, embedded, self.library, self.pager));
         begun.transpose()
     }
 

@@ -329,11 +329,7 @@ impl DocumentThread {
         let serial = checkpoint.sequencer.serial;
         let mut overtaken = Vec::new();
         let written = loop {
-            let mut queues = shared.lock();
-            let before = queues.records.iter();
-            let before = before.take_while(|record| record.serial < serial).count();
-            overtaken.extend(queues.records.drain(..before));
-            drop(queues);
+            overtaken.extend(self.take_records_before(serial));
             overtaken.append(&mut checkpoint.records);
             let longest = if self.content == Content::Nothing || trust == Trust::Nothing {
                 FIRST_CHECKPOINT
@@ -383,6 +379,14 @@ impl DocumentThread {
                 self.note_failure(Part::Checkpoint, &error);
             }
         }
+    }
+
+    /// Takes the records that were accepted before a number.
+    fn take_records_before(&self, serial: u64) -> Vec<Record> {
+        let mut queues = self.shared.lock();
+        let before = queues.records.iter();
+        let before = before.take_while(|record| record.serial < serial).count();
+        queues.records.drain(..before).collect()
     }
 
     /// Writes a checkpoint, with `records` that were accepted before it, in a transaction. If its pages take longer than

@@ -8,7 +8,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`kind`] | which pictures are read |
-//! | `png_file`, `jpeg_file`, `tiff_file`, `tiff_palette`, `exr_file`, `ora_file` | one kind each |
+//! | `png_file`, `jpeg_file`, `tiff_file`, `exr_file`, `ora_file` | one kind each |
 //! | `pixels` | what a file holds; checks of size and numbers |
 //! | `colours` | from numbers to light |
 
@@ -20,7 +20,6 @@ mod ora_file;
 mod pixels;
 mod png_file;
 mod tiff_file;
-mod tiff_palette;
 
 use std::fmt;
 use std::fs::File;

@@ -1,6 +1,8 @@
 //! TIFF and BigTIFF: grey, palette, RGB, CMYK and YCbCr, of integers of 1 to 32 bits or of floats; colours by
 //! the profile, else by chromaticities. Floats are light.
 
+mod palette;
+
 use std::io::{BufRead, ErrorKind, Seek};
 
 use image::metadata::Orientation;
@@ -12,7 +14,6 @@ use tiff::{ColorType, TiffError, TiffFormatError};
 
 use super::colours::{Colours, MOST_PROFILE, Range, UnusedMark};
 use super::pixels::{Alpha, Numbers, Picture, check_size};
-use super::tiff_palette;
 use crate::import_error::ImportError;
 
 const TRANSFER_FUNCTION: Tag = Tag::Unknown(301);
@@ -56,7 +57,7 @@ pub(super) fn read(
     let is_grey = matches!(kind, ColorType::Gray(_) | ColorType::Multiband { .. });
     let (colours, unused) = marked(&mut decoder, if is_grey { 1 } else { 3 });
     let Samples { numbers, channels } = if is_palette {
-        tiff_palette::read(decoder, size, most_bytes)?
+        palette::read(decoder, size, most_bytes)?
     } else {
         let samples = samples(&mut decoder, size, most_bytes)?;
         match kind {

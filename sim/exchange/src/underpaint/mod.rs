@@ -19,7 +19,7 @@ use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::tile::TileId;
 use maulstick_optics::Paint;
-use maulstick_painting::{LaidTile, Painting};
+use maulstick_painting::{EditError, LaidTile, Painting, SurfaceError};
 use maulstick_types::paint::TILE;
 
 pub use self::films::MOST_PAINTS;
@@ -50,7 +50,7 @@ impl Support {
     /// [`ImportError`] for an unknown surface or paint, none, or more than 16 paints.
     pub fn of(painting: &Painting, surface: u32, paints: &[String]) -> Result<Self, ImportError> {
         let (Some(bare), Some(store)) = (painting.bare(surface), painting.store(surface)) else {
-            return Err(maulstick_canvas::EditError::NoSurface(surface).into());
+            return Err(EditError::from(SurfaceError::Unknown(surface)).into());
         };
         if !(1..=MOST_PAINTS).contains(&paints.len()) {
             return Err(ImportError::Paints(paints.len()));
@@ -58,7 +58,7 @@ impl Support {
         let mut found: Vec<Paint> = Vec::new();
         for name in paints {
             let paint = painting.library().find(name);
-            let paint = paint.map_err(maulstick_painting::paint_error)?;
+            let paint = paint.map_err(EditError::from)?;
             if !found.iter().any(|other| other.name == paint.name) {
                 found.push(paint.clone());
             }

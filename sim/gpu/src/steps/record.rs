@@ -92,6 +92,15 @@ impl Grid {
     }
 }
 
+/// Number of a transfer for the shaders, and a marker's flow.
+fn number_and_flow(transfer: Transfer) -> (u32, f32) {
+    match transfer {
+        Transfer::Sponge => (1, 0.0),
+        Transfer::Marker { flow } => (2, flow),
+        Transfer::Paint | Transfer::Sampler | Transfer::Vacuum => (0, 0.0),
+    }
+}
+
 impl StepRecord {
     /// A motion of a step of a brush and a window that are on the device; nothing is drawn.
     pub fn new(
@@ -102,11 +111,7 @@ impl StepRecord {
     ) -> Self {
         let (traits, after) = (&step.traits, sweep.to);
         let (origin, limit) = (step.window.origin(), step.window.limit());
-        let (transfer, flow) = match step.handling.transfer {
-            Transfer::Sponge => (1, 0.0),
-            Transfer::Marker { flow } => (2, flow),
-            Transfer::Paint | Transfer::Sampler | Transfer::Vacuum => (0, 0.0),
-        };
+        let (transfer, flow) = number_and_flow(step.handling.transfer);
         Self {
             half_widths: std::array::from_fn(|i| traits.half_width_before(i + 1)),
             // Modulo 2³²: where it goes beyond the window no cell is looked at.

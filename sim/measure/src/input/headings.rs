@@ -86,22 +86,28 @@ impl Headings {
             }
             found.wavelengths.push((column, nm));
         }
+        found.check(table)?;
+        Ok(found)
+    }
+
+    /// Checks that there are paints and wavelengths enough.
+    fn check(&self, table: &Table) -> Result<(), MeasureError> {
         let fault =
             |what: &str, help: &str| Err(MeasureError::new(what, help).line(table.first_line()));
-        if found.paints.is_empty() {
+        if self.paints.is_empty() {
             return fault(
                 "no column names a paint",
                 "head a column with each paint's name, and write its shares below",
             );
         }
         let visible = |(_, nm): &&(usize, f64)| (380.0..=780.0).contains(nm);
-        if found.wavelengths.iter().filter(visible).count() < 3 {
+        if self.wavelengths.iter().filter(visible).count() < 3 {
             return fault(
                 "fewer than three wavelengths between 380 and 780 nm",
                 "head the columns of readings with their wavelengths in nm",
             );
         }
-        Ok(found)
+        Ok(())
     }
 
     /// Column of a reserved heading.

@@ -1,7 +1,7 @@
 //! The skin of a head in its footprint: triangles over the middles of cells.
 
 use super::band::Band;
-use super::rasterizer::{Line, Piece};
+use super::piece::{Line, Piece};
 use crate::brush::traits::TEXELS_PER_STRIP;
 use crate::interface::Step;
 

@@ -9,6 +9,7 @@ pub mod contact;
 mod draw_skin;
 pub mod drawn;
 pub mod lying;
+mod piece;
 mod rasterizer;
 pub mod ribbons;
 

@@ -8,7 +8,7 @@ use maulstick_brush::{Head, HeadPose};
 use maulstick_canvas::window::Area;
 use maulstick_num::fork_join::each;
 
-use super::rasterizer::{Line, Piece};
+use super::piece::{Line, Piece};
 use super::shares_of;
 use crate::brush::traits::TEXELS_PER_STRIP;
 use crate::interface::Step;

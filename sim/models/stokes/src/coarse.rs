@@ -8,16 +8,19 @@ use maulstick_stokes::domain::Solids;
 use maulstick_stokes::flow::Conditions;
 use maulstick_stokes::grid::Grid;
 
-use crate::flow_backend::FlowWindow;
 use crate::voxels::Voxels;
 
-/// Side of a cell on which flow is found, m, where voxels are smaller.
-const SIDE_M: f64 = 5e-4;
-
-/// Voxels along the side of a cell of the flow, for voxels of `cell_m`.
-#[must_use]
-pub fn voxels_a_side(cell_m: f64) -> usize {
-    ((SIDE_M / cell_m) as usize).max(1)
+/// Paint at rest in a window, and what moves it.
+#[derive(Clone, Copy, Debug)]
+pub struct FlowWindow<'a> {
+    /// The cells.
+    pub grid: &'a Grid,
+    /// Fill of each cell.
+    pub fill: &'a [f32],
+    /// What the paint lies on, and the bristles in it.
+    pub solids: &'a Solids,
+    /// Step, paint and gravity.
+    pub conditions: &'a Conditions,
 }
 
 /// The paint of an area on the grid of the flow.

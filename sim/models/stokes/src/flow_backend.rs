@@ -2,28 +2,14 @@
 
 use std::fmt;
 
-use maulstick_stokes::domain::Solids;
 use maulstick_stokes::flow::{Conditions, Flow};
 use maulstick_stokes::grid::Grid;
 use maulstick_types::paint::Decision;
 
-use crate::coarse::Coarse;
+use crate::coarse::{Coarse, FlowWindow};
 
 /// Cells of an axis from which down a window is not made coarser.
 const FEWEST_CELLS: usize = 4;
-
-/// Paint at rest in a window, and what moves it.
-#[derive(Clone, Copy, Debug)]
-pub struct FlowWindow<'a> {
-    /// The cells.
-    pub grid: &'a Grid,
-    /// Fill of each cell.
-    pub fill: &'a [f32],
-    /// What the paint lies on, and the bristles in it.
-    pub solids: &'a Solids,
-    /// Step, paint and gravity.
-    pub conditions: &'a Conditions,
-}
 
 /// Why a backend has not found the flow of a window.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -5,7 +5,13 @@ use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::relief::Relief;
 use maulstick_canvas::window::Window;
 
-use crate::coarse::voxels_a_side;
+/// Side of a cell on which flow is found, m, where voxels are smaller.
+const SIDE_M: f64 = 5e-4;
+
+/// Voxels along the side of a cell of the flow, for voxels of `cell_m`.
+fn voxels_a_side(cell_m: f64) -> usize {
+    ((SIDE_M / cell_m) as usize).max(1)
+}
 
 /// Share of a voxel that must be open for paint to lie in it; what is less belongs to the next.
 const LEAST_OPEN: f32 = 0.3;

@@ -71,6 +71,25 @@ pub enum PaintError {
     },
 }
 
+/// A paint of a file that has both of its rows, K and S; the file ends at this line.
+fn whole(
+    (name, colour_index, source): (String, String, String),
+    rows: Option<[Option<Spectrum>; 2]>,
+    line: usize,
+) -> Result<Paint, PaintError> {
+    let Some([Some(k), Some(s)]) = rows else {
+        let what = format!("'{name}' lacks its row of K or of S");
+        return Err(PaintError::File { line, what });
+    };
+    Ok(Paint {
+        name,
+        colour_index,
+        source,
+        k,
+        s,
+    })
+}
+
 fn meant(nearest: Option<&str>) -> String {
     nearest.map_or(String::new(), |name| format!("; did you mean '{name}'?"))
 }
@@ -222,23 +241,12 @@ impl PaintLibrary {
                 return Err(fault(format!("a second row of {quantity} of '{name}'")));
             }
         }
-        let mut paints = Vec::new();
-        for (name, colour_index, source) in order {
-            let Some([Some(k), Some(s)]) = found.remove(&name) else {
-                let what = format!("'{name}' lacks its row of K or of S");
-                return Err(PaintError::File {
-                    line: table.last_line(),
-                    what,
-                });
-            };
-            paints.push(Paint {
-                name,
-                colour_index,
-                source,
-                k,
-                s,
-            });
-        }
+        let line = table.last_line();
+        let paints = order.into_iter().map(|own| {
+            let rows = found.remove(&own.0);
+            whole(own, rows, line)
+        });
+        let paints: Vec<Paint> = paints.collect::<Result<_, _>>()?;
         if paints.is_empty() {
             return Err(PaintError::File {
                 line: 1,

@@ -32,10 +32,10 @@ pub use surface::{
 
 use std::fmt::Debug;
 
-use maulstick_canvas::EditError;
 use maulstick_types::values::{BrushName, ValueError};
 use maulstick_types::{Edit, Mixture};
 
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Hands the list of all edits to a macro.
@@ -74,6 +74,16 @@ pub trait PaintingEdit: Debug {
 
     /// Words that introduce its result on the command line; `None` if it is done without a word.
     fn reply(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// True if it takes the newest step back. A stroke that still waits to be painted is dropped instead.
+    fn is_undo(&self) -> bool {
+        false
+    }
+
+    /// The edit that takes back the newest step of a brush alone, if this one may mean that.
+    fn undo_of(&self, _brush: &BrushName) -> Option<Edit> {
         None
     }
 

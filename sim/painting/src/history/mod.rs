@@ -10,7 +10,7 @@ mod walk;
 pub use step::{
     Change, NonTileState, Step, StepEffects, SurfaceMaterial, TilePlace, TileRef, same,
 };
-pub(crate) use step::{OpenStep, name_models};
+pub(crate) use step::{OpenStep, materials, name_models};
 pub use walk::ListedStep;
 pub(crate) use walk::{Direction, placed};
 

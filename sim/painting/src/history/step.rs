@@ -8,10 +8,11 @@ use maulstick_canvas::store::TileRect;
 use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_types::paint::StepName;
-use maulstick_types::scene::{Layer, Well};
+use maulstick_types::scene::{Layer, Scene, Well};
 use serde::{Deserialize, Serialize};
 
 use crate::ledger::{Booked, Ledger};
+use crate::snapshot::OpenStepSnapshot;
 
 /// A surface's number and a tile of it.
 pub type TilePlace = (u32, TileId);
@@ -79,6 +80,21 @@ impl PartialEq for SurfaceMaterial {
             && self.tooth == other.tooth
             && self.wells == other.wells
     }
+}
+
+/// Materials of the surfaces of a scene.
+pub(crate) fn materials(scene: &Scene) -> Vec<SurfaceMaterial> {
+    let surfaces = scene.surfaces.iter();
+    surfaces
+        .map(|surface| SurfaceMaterial {
+            surface: surface.id,
+            ground: surface.ground.clone(),
+            tooth: surface.tooth.clone(),
+            tooth_seed: surface.tooth_seed,
+            wells: surface.wells.clone(),
+            model: surface.model.clone(),
+        })
+        .collect()
 }
 
 /// Names the models of materials that do not.
@@ -188,9 +204,10 @@ impl Step {
     /// True if it changed anything that the other one changed.
     pub(super) fn lies_on(&self, other: &Self) -> bool {
         let changes = |change: &Change| !same(&change.before, &change.after);
-        let (few, many) = match self.tiles.len() < other.tiles.len() {
-            true => (&self.tiles, &other.tiles),
-            false => (&other.tiles, &self.tiles),
+        let (few, many) = if self.tiles.len() < other.tiles.len() {
+            (&self.tiles, &other.tiles)
+        } else {
+            (&other.tiles, &self.tiles)
         };
         let mut tiles = few.iter();
         let mut loads = self.effects.loads.keys();
@@ -200,9 +217,10 @@ impl Step {
             || self.effects.materials.is_some() && other.effects.materials.is_some()
     }
 
-    /// The step before it was finished, in a painting that is besides as it is in `rest`.
+    /// The step before it was finished, in a painting that is besides as it is in `rest`; `kept` is what its document
+    /// has of it.
     #[must_use]
-    pub(crate) fn reopened(self, rest: &NonTileState, reached: BTreeSet<TilePlace>) -> OpenStep {
+    pub(crate) fn reopened(self, rest: &NonTileState, kept: Option<&OpenStepSnapshot>) -> OpenStep {
         let mut before = rest.clone();
         for (name, [page, _]) in &self.effects.loads {
             before.loads.insert(name.clone(), page.clone());
@@ -210,6 +228,11 @@ impl Step {
         if let Some([layers, _]) = &self.effects.layers {
             before.layers.clone_from(layers);
         }
+        if let Some(kept) = kept {
+            before.tops.clone_from(&kept.tops);
+        }
+        let reached = kept.into_iter().flat_map(|open| &open.reached);
+        let reached = reached.map(|[surface, x, y]| (*surface, TileId { x: *x, y: *y }));
         let tiles = self.tiles.iter();
         OpenStep {
             id: self.id,
@@ -220,7 +243,7 @@ impl Step {
                 .collect(),
             before,
             booked: self.effects.booked.clone(),
-            reached,
+            reached: reached.collect(),
             last_reach: None,
         }
     }
@@ -245,4 +268,18 @@ pub(crate) struct OpenStep {
     pub reached: BTreeSet<TilePlace>,
     /// The tiles that its last motion reached.
     pub last_reach: Option<(u32, TileRect)>,
+}
+
+impl OpenStep {
+    /// The step as a document saves it.
+    pub(crate) fn snapshot(&self) -> OpenStepSnapshot {
+        let reached = self.reached.iter();
+        OpenStepSnapshot {
+            step: self.id,
+            tops: self.before.tops.clone(),
+            reached: reached
+                .map(|(surface, id)| [*surface, id.x, id.y])
+                .collect(),
+        }
+    }
 }

@@ -8,9 +8,12 @@ use maulstick_canvas::tile::Tile;
 use maulstick_model::interface::{CountOwn, StepReport};
 use maulstick_types::scene::{CANVAS, PALETTE};
 
-use super::Painting;
+use super::backend::Backend;
+use super::brushes::Brushes;
+use super::desk::Desk;
 use super::surfaces::SurfaceState;
 use crate::ledger::{Booked, Ledger, LedgerReport, Stocks, Tallies, balance};
+use crate::snapshot::WorkSnapshot;
 
 /// What was booked and counted.
 #[derive(Clone, Default)]
@@ -18,39 +21,28 @@ pub(crate) struct Accounts {
     pub(crate) ledger: Ledger,
     /// The ledger as far as its changes are booked for a step.
     accounted: Ledger,
-    /// Steps of the paint model.
-    pub(crate) steps: u64,
-    /// Cells of their footprints.
-    pub(crate) footprint_cells: u64,
-    /// Time of the first and of the last state, ns.
-    pub(crate) span_ns: Option<(u64, u64)>,
+    pub(crate) work: WorkSnapshot,
 }
 
 impl Accounts {
     /// The accounts of a document.
-    pub(crate) fn restored(
-        ledger: Ledger,
-        [steps, footprint_cells]: [u64; 2],
-        span_ns: Option<(u64, u64)>,
-    ) -> Self {
+    pub(crate) fn restored(ledger: Ledger, work: WorkSnapshot) -> Self {
         Self {
             accounted: ledger.clone(),
             ledger,
-            steps,
-            footprint_cells,
-            span_ns,
+            work,
         }
     }
 
     /// Notes the time of a state.
     pub(crate) fn note_time(&mut self, event_ns: u64) {
-        let (first, last) = self.span_ns.unwrap_or((event_ns, event_ns));
-        self.span_ns = Some((first, last.max(event_ns)));
+        let (first, last) = self.work.span_ns.unwrap_or((event_ns, event_ns));
+        self.work.span_ns = Some((first, last.max(event_ns)));
     }
 
     /// Notes what steps of the paint model did.
     pub(crate) fn note(&mut self, report: &StepReport) {
-        self.footprint_cells += report.footprint_cells;
+        self.work.footprint_cells += report.footprint_cells;
         self.ledger.from_mode(&report.from_nowhere);
         self.ledger.to_cleaner(&report.lifted);
     }
@@ -67,19 +59,21 @@ impl Accounts {
         self.ledger.book(booked, times);
         self.accounted = self.ledger.clone();
     }
-}
 
-impl Painting {
-    /// Balances the books.
-    pub fn report(&mut self) -> LedgerReport {
-        self.commit();
+    /// Balances the books with what is found on brushes and surfaces.
+    pub(crate) fn report(
+        &self,
+        brushes: &Brushes,
+        desk: &Desk,
+        backend: &mut Backend,
+    ) -> LedgerReport {
         let mut stocks = Stocks::default();
-        for brush in self.brushes.iter() {
+        for brush in brushes.iter() {
             add(&mut stocks.brush, &brush.load.counts());
         }
         let mut covered_cells = 0;
-        for surface in self.surfaces.iter() {
-            if let Some(count) = self.backend.models.of(surface.model).count_own() {
+        for surface in desk.surfaces.iter() {
+            if let Some(count) = backend.models.of(surface.model).count_own() {
                 let (wet, dry) = counts_own(surface, count);
                 add(&mut stocks.dry, &dry);
                 match surface.id {
@@ -97,17 +91,17 @@ impl Painting {
                 _ => {}
             }
         }
-        let paints = self.scene.paints.iter();
+        let paints = desk.scene.paints.iter();
         let names: Vec<String> = paints.map(|slot| slot.name.clone()).collect();
-        let (first, last) = self.accounts.span_ns.unwrap_or_default();
+        let (first, last) = self.work.span_ns.unwrap_or_default();
         let tallies = Tallies {
-            steps: self.accounts.steps,
-            footprint_cells: self.accounts.footprint_cells,
+            steps: self.work.steps,
+            footprint_cells: self.work.footprint_cells,
             covered_cells,
             seconds: (last - first) as f64 * 1e-9,
         };
-        let quantum_m3 = quantum_m3(self.surfaces.cell_m());
-        balance(&self.accounts.ledger, &stocks, &names, quantum_m3, tallies)
+        let quantum_m3 = quantum_m3(desk.surfaces.cell_m());
+        balance(&self.ledger, &stocks, &names, quantum_m3, tallies)
     }
 }
 

@@ -6,9 +6,11 @@ use maulstick_canvas::page::Page;
 use maulstick_canvas::tile::Version;
 use maulstick_model::brush::load::BrushLoad;
 
+use super::bench::Workbench;
 use super::{Named, Painting};
-use crate::history::{Step, TilePlace};
-use crate::snapshot::{OpenStepSnapshot, PaintingSnapshot, RowCounts};
+use crate::beginning::{Beginning, RecordChange};
+use crate::history::{OpenStep, Step, TilePlace};
+use crate::snapshot::{PaintingSnapshot, QuotaSnapshot, RowCounts, SequencerSnapshot};
 
 /// Changes since the previous checkpoint; one moment of the painting, whole.
 #[derive(Clone, Debug)]
@@ -35,58 +37,13 @@ impl Painting {
     /// Changes since the last call, where the newest tile version was `since`.
     pub fn checkpoint(&mut self, since: u64) -> Checkpoint {
         self.commit();
-        let loads = self.brushes.load_pages(&self.surfaces.pager);
-        let (mut steps, gone_steps) = self.history.take_touched();
-        let open = self.open_steps();
-        let open_steps = self.history.open().map(|step| OpenStepSnapshot {
-            step: step.id,
-            tops: step.before.tops.clone(),
-            reached: step
-                .reached
-                .iter()
-                .map(|(surface, id)| [*surface, id.x, id.y])
-                .collect(),
-        });
-        let open_steps = open_steps.collect();
-        steps.extend(open);
-        let (named, gone_named) = self.versions.take_touched();
-        let (mut tiles, mut all_tiles) = (Vec::new(), 0);
-        for surface in self.surfaces.iter() {
-            for (id, version) in surface.store.iter() {
-                all_tiles += u64::from(version.number > 0);
-                if version.number > since {
-                    tiles.push(((surface.id, id), version.clone()));
-                }
-            }
-        }
-        let has_changed = self.history.has_changed_surfaces();
-        self.history.note_changed_surfaces(has_changed);
-        let (step, undone) = self.history.position();
-        let kept = PaintingSnapshot {
-            scene: self.scene.clone(),
-            paints: self.optics.library.text().to_owned(),
-            tops: self.surfaces.tops(),
-            brushes: self.brushes.snapshot(&self.surfaces, &loads),
-            ledger: self.accounts.ledger.clone(),
-            versions: self.surfaces.newest_version,
-            next_page: self.surfaces.pager.next_number(),
-            step,
-            open_steps,
-            undone: undone.to_vec(),
-            has_changed_surfaces: has_changed,
-            line: self.versions.line.clone(),
-            steps: self.accounts.steps,
-            footprint_cells: self.accounts.footprint_cells,
-            span_ns: self.accounts.span_ns,
-            quota: self.history.quota,
-            record_quota: self.record.quota,
-            clock: self.clock.clone(),
-            rows: Some(RowCounts {
-                tiles: all_tiles,
-                steps: (self.history.steps().count() + self.history.open().count()) as u64,
-                versions: self.versions.iter().len() as u64,
-            }),
-        };
+        let bench = &mut self.bench;
+        let loads = bench.brushes.load_pages(&bench.desk.surfaces.pager);
+        let (mut steps, gone_steps) = bench.past.history.take_touched();
+        steps.extend(bench.open_steps());
+        let (named, gone_named) = bench.past.versions.take_touched();
+        let (tiles, all_tiles) = bench.desk.surfaces.changed_since(since);
+        let kept = self.snapshot(&loads, all_tiles);
         Checkpoint {
             kept,
             tiles,
@@ -95,14 +52,97 @@ impl Painting {
             gone_steps,
             named,
             gone_named,
-            dead: self.surfaces.pager.take_dead(),
+            dead: self.pager().take_dead(),
+        }
+    }
+
+    /// The painting besides its tiles, of which so many were ever painted on.
+    fn snapshot(
+        &mut self,
+        loads: &BTreeMap<String, Page<BrushLoad>>,
+        tiles: u64,
+    ) -> PaintingSnapshot {
+        let Workbench {
+            desk,
+            brushes,
+            accounts,
+            past,
+            ..
+        } = &mut self.bench;
+        let (surfaces, history) = (&desk.surfaces, &mut past.history);
+        let has_changed_surfaces = history.has_changed_surfaces();
+        history.note_changed_surfaces(has_changed_surfaces);
+        let (step, undone) = history.position();
+        PaintingSnapshot {
+            scene: desk.scene.clone(),
+            paints: desk.optics.library.text().to_owned(),
+            tops: surfaces.tops(),
+            brushes: brushes.snapshot(surfaces, loads),
+            ledger: accounts.ledger.clone(),
+            versions: surfaces.newest_version,
+            next_page: surfaces.pager.next_number(),
+            step,
+            open_steps: history.open().map(OpenStep::snapshot).collect(),
+            undone: undone.to_vec(),
+            has_changed_surfaces,
+            line: past.versions.line.clone(),
+            work: accounts.work.clone(),
+            quotas: QuotaSnapshot {
+                quota: history.quota,
+                record_quota: past.record.quota,
+            },
+            clock: self.clock.clone(),
+            rows: Some(RowCounts {
+                tiles,
+                steps: (history.steps().count() + history.open().count()) as u64,
+                versions: past.versions.iter().len() as u64,
+            }),
         }
     }
 
     /// Makes the next checkpoint hold the whole history and all versions: its document has none of them.
     pub fn tell_all_again(&mut self) {
-        self.history.touch_all();
-        self.versions.touch_all();
-        self.break_record();
+        self.bench.past.touch_all();
+    }
+
+    /// Limit of the record, bytes; beyond it the record begins anew at the next checkpoint. 0 keeps none.
+    pub fn set_record_quota(&mut self, bytes: u64) {
+        self.bench.past.record.quota = bytes;
+    }
+
+    /// Limit of the record, bytes.
+    #[must_use]
+    pub fn record_quota(&self) -> u64 {
+        self.bench.past.record.quota
+    }
+
+    /// Has the record begin anew at the next checkpoint, as after a change that no accepted message describes.
+    pub fn break_record(&mut self) {
+        self.bench.past.record.is_broken = true;
+    }
+
+    /// Change of the record at a checkpoint that was just made, of this painting and its sequencer, at a time of the
+    /// wall clock, ms since 1970.
+    pub fn advance_record(
+        &mut self,
+        checkpoint: &Checkpoint,
+        sequencer: &SequencerSnapshot,
+        time_ms: u64,
+    ) -> RecordChange {
+        let is_open = |step: &&Step| {
+            let mut open = checkpoint.kept.open_steps.iter();
+            open.any(|open| open.step == step.id)
+        };
+        let Workbench { desk, past, .. } = &mut self.bench;
+        let (surfaces, versions) = (&desk.surfaces, &past.versions);
+        past.record.advance(|| Beginning {
+            time_ms,
+            painting: checkpoint.kept.clone(),
+            sequencer: sequencer.clone(),
+            tiles: surfaces.painted(),
+            loads: checkpoint.loads.clone(),
+            open: checkpoint.steps.iter().filter(is_open).cloned().collect(),
+            named: versions.iter().cloned().collect(),
+        })
     }
 }

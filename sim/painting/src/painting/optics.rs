@@ -9,8 +9,7 @@ use maulstick_appearance::blank_surface::{
 use maulstick_appearance::colouring::Colouring;
 use maulstick_appearance::ground::Ground;
 use maulstick_appearance::heap::{Heap, HeapCells};
-use maulstick_appearance::light::{changes_colour, studio_settings};
-use maulstick_canvas::EditError;
+use maulstick_appearance::light::studio_settings;
 use maulstick_canvas::assets::Assets;
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_canvas::relief::Relief;
@@ -19,9 +18,8 @@ use maulstick_optics::{Paint, PaintLibrary, Spectrum, Studio, THINNER};
 use maulstick_types::Mixture;
 use maulstick_types::scene::{Light, PaintSlot, Scene, Surface, WellKind};
 
-use super::Painting;
-use super::undo::materials;
-use crate::error::paint_error;
+use crate::error::EditError;
+use crate::history::materials;
 use crate::setup::relief_called;
 use maulstick_models::model_called;
 
@@ -49,7 +47,7 @@ impl Optics {
         let settings = studio_settings(&scene.light)?;
         let mut look = Appearance::new(Studio::new(&settings, library.paints()));
         for (place, slot) in scene.paints.iter().enumerate() {
-            let paint = library.find(&slot.name).map_err(paint_error)?;
+            let paint = library.find(&slot.name)?;
             look.studio.add(paint);
             if paint.is_thinner() {
                 look.thinner = Some(place);
@@ -74,7 +72,7 @@ impl Optics {
         self.blank_in(&self.look.studio, surface, relief)
     }
 
-    fn blank_in(
+    pub(crate) fn blank_in(
         &self,
         studio: &Studio,
         surface: &Surface,
@@ -108,11 +106,11 @@ impl Optics {
                     continue;
                 }
             };
-            let mixture = self.library.check(mixture).map_err(paint_error)?;
+            let mixture = self.library.check(mixture)?;
             let mut mixed = studio.clone();
             let mut shares = Vec::new();
             for part in &mixture.parts {
-                let paint = self.library.find(&part.paint).map_err(paint_error)?;
+                let paint = self.library.find(&part.paint)?;
                 shares.push((mixed.add(paint), part.share));
             }
             let colours = HeapColours::of(&mixed, &shares, ground.mean());
@@ -131,32 +129,17 @@ impl Optics {
         })
     }
 
-    /// The slots of several mixtures; where one is refused no paint gets a slot.
-    pub(crate) fn all_slots(
-        &mut self,
-        scene: &mut Scene,
-        mixtures: &[Mixture],
-    ) -> Result<Vec<SlotShares>, EditError> {
-        let known = (scene.paints.clone(), Arc::clone(&self.look));
-        let slots = mixtures.iter().map(|mixture| self.slots(scene, mixture));
-        let slots: Result<Vec<SlotShares>, EditError> = slots.collect();
-        if slots.is_err() {
-            (scene.paints, self.look) = known;
-        }
-        slots
-    }
-
     /// The slots of a mixture's paints; new paints get the next free ones of the scene.
     pub(crate) fn slots(
         &mut self,
         scene: &mut Scene,
         mixture: &Mixture,
     ) -> Result<SlotShares, EditError> {
-        let mixture = self.library.check(mixture).map_err(paint_error)?;
+        let mixture = self.library.check(mixture)?;
         let mut new = Vec::new();
         for part in &mixture.parts {
             if slot_of(scene, &part.paint).is_none() {
-                new.push(self.library.find(&part.paint).map_err(paint_error)?);
+                new.push(self.library.find(&part.paint)?);
             }
         }
         // All or none: a refused mixture changes nothing.
@@ -185,7 +168,7 @@ impl Optics {
     }
 
     /// Takes over how strongly relief is embossed where it is part of the colours.
-    fn emboss(&mut self, scene: &Scene) {
+    pub(crate) fn emboss(&mut self, scene: &Scene) {
         if embosses(scene) {
             Arc::make_mut(&mut self.look).set_relief(scene.light.relief as f32);
             self.note(scene);
@@ -239,49 +222,8 @@ pub(crate) fn thinner_slot(scene: &Scene) -> Option<usize> {
     slot_of(scene, THINNER)
 }
 
-impl Painting {
-    /// Changes the light, without choosing the exposure anew.
-    ///
-    /// # Errors
-    /// [`EditError`] for an invalid light.
-    pub fn relight(&mut self, light: &Light) -> Result<(), EditError> {
-        let settings = studio_settings(light)?;
-        if changes_colour(light, &self.scene.light) {
-            let mut studio = Studio::new(&settings, self.optics.library.paints());
-            let mut slots = Vec::new();
-            for slot in &self.scene.paints {
-                let paint = self.optics.library.find(&slot.name).map_err(paint_error)?;
-                slots.push(paint_slot(&mut studio, paint, slot.file_hash));
-            }
-            let mut bares = Vec::new();
-            for (own, surface) in self.surfaces.iter().zip(&self.scene.surfaces) {
-                let relief = Some(Arc::clone(&own.bare.relief));
-                bares.push(Arc::new(self.optics.blank_in(&studio, surface, relief)?));
-            }
-            let surfaces = self.surfaces.iter_mut().zip(bares);
-            surfaces.for_each(|(surface, bare)| surface.bare = bare);
-            self.scene.paints = slots;
-            Arc::make_mut(&mut self.optics.look).relight(studio);
-        }
-        self.scene.light = light.clone();
-        self.scene.version += 1;
-        self.optics.emboss(&self.scene);
-        self.optics.note(&self.scene);
-        Ok(())
-    }
-
-    /// Sets the exposure so that the bare canvas does not clip.
-    pub fn expose(&mut self) {
-        let ground = self.surfaces[0].bare.ground.mean();
-        let rgb = self.optics.look.studio.colour(&[], ground);
-        let light = &mut self.scene.light;
-        light.exposure = maulstick_optics::light::starting_exposure(rgb, light.intensity);
-        self.scene.version += 1;
-    }
-}
-
 /// Gives a paint a slot of the studio and of the scene.
-fn paint_slot(studio: &mut Studio, paint: &Paint, file_hash: u32) -> PaintSlot {
+pub(crate) fn paint_slot(studio: &mut Studio, paint: &Paint, file_hash: u32) -> PaintSlot {
     let slot = studio.add(paint);
     let seen = |films: &[(usize, f64)], ground: f64| {
         let ground = studio.sample(&Spectrum::flat(ground));

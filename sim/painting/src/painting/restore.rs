@@ -3,25 +3,25 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::assets::Assets;
 use maulstick_canvas::page::{Page, Pager};
-use maulstick_canvas::tile::{TileId, Version};
+use maulstick_canvas::tile::Version;
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_optics::PaintLibrary;
-use maulstick_types::scene::{CANVAS, PALETTE};
+use maulstick_types::scene::{CANVAS, PALETTE, Scene};
 
 use super::accounts::Accounts;
+use super::backend::Backend;
+use super::bench::Workbench;
 use super::brushes::Brushes;
-use super::optics::Optics;
-use super::record::RecordState;
-use super::strokes::backend::Backend;
-use super::surfaces::Surfaces;
-use super::undo::materials;
-use super::undo::versions::Versions;
+use super::desk::Desk;
+use super::past::Past;
+use super::past::record::RecordState;
+use super::past::versions::Versions;
 use super::{Named, Painting};
 use crate::beginning::Beginning;
-use crate::history::{History, NonTileState, Step, TilePlace};
+use crate::error::EditError;
+use crate::history::{History, NonTileState, Step, TilePlace, materials};
 use crate::setup::check_size;
 use crate::snapshot::PaintingSnapshot;
 
@@ -44,34 +44,19 @@ pub struct Restored {
     pub beginning: Option<Arc<Beginning>>,
 }
 
-impl Painting {
-    /// A painting from its document.
-    ///
-    /// # Errors
-    /// [`EditError`] if the stored parts do not fit together.
-    pub fn restore(
-        restored: Restored,
-        library: PaintLibrary,
-        pager: Arc<Pager>,
-    ) -> Result<Self, EditError> {
-        let kept = restored.kept;
-        let scene = kept.scene;
-        for surface in &scene.surfaces {
-            check_size(surface.cells, surface.cell_m)?;
-        }
-        let ids: Vec<u32> = scene.surfaces.iter().map(|surface| surface.id).collect();
-        if ids != [CANVAS, PALETTE] {
-            return Err(EditError::Damaged(
-                "the document has no canvas and palette".to_owned(),
-            ));
-        }
-        let optics = Optics::of(&scene, library, restored.embedded)?;
-        let mut surfaces = Surfaces::new(&scene, &optics, pager)?;
+impl Restored {
+    /// Its desk, with the tiles.
+    fn desk(&mut self, library: PaintLibrary, pager: Arc<Pager>) -> Result<Desk, EditError> {
+        let kept = &self.kept;
+        check(&kept.scene)?;
+        let assets = std::mem::take(&mut self.embedded);
+        let mut desk = Desk::new(kept.scene.clone(), library, assets, pager)?;
+        let surfaces = &mut desk.surfaces;
         surfaces.newest_version = kept.versions;
         for surface in surfaces.iter_mut() {
             surface.top = kept.tops.get(&surface.id).copied().unwrap_or(0.0);
         }
-        for ((surface, id), version) in restored.tiles {
+        for ((surface, id), version) in std::mem::take(&mut self.tiles) {
             if let Some(surface) = surfaces.find_mut(surface)
                 && id.x < surface.store.grid()[0]
                 && id.y < surface.store.grid()[1]
@@ -79,47 +64,76 @@ impl Painting {
                 surface.store.replace(id, version);
             }
         }
-        let brushes = Brushes::restored(kept.brushes, &restored.loads, &surfaces)?;
-        let (open, steps): (Vec<Step>, Vec<Step>) = (restored.steps.into_iter())
-            .partition(|step| kept.open_steps.iter().any(|open| open.step == step.id));
+        Ok(desk)
+    }
+
+    /// Its past.
+    fn past(self) -> Past {
+        let kept = self.kept;
+        let open_step = |id: u64| kept.open_steps.iter().find(|open| open.step == id);
+        let is_open = |step: &Step| open_step(step.id).is_some();
+        let (open, steps): (Vec<Step>, Vec<Step>) = self.steps.into_iter().partition(is_open);
         let rest = NonTileState {
-            loads: restored.loads,
-            ledger: kept.ledger.clone(),
-            layers: scene.layers.clone(),
-            materials: materials(&scene),
-            tops: kept.tops.clone(),
+            loads: self.loads,
+            ledger: kept.ledger,
+            materials: materials(&kept.scene),
+            layers: kept.scene.layers,
+            tops: kept.tops,
         };
         let reopened = |step: Step| {
-            let mut known = kept.open_steps.iter();
-            let known = known.find(|open| open.step == step.id);
-            let reached = known.into_iter().flat_map(|open| &open.reached);
-            let reached = reached.map(|[surface, x, y]| (*surface, TileId { x: *x, y: *y }));
-            let reached = reached.collect();
-            let mut open = step.reopened(&rest, reached);
-            if let Some(tops) = known.map(|open| open.tops.clone()) {
-                open.before.tops = tops;
-            }
-            open
+            let kept = open_step(step.id);
+            step.reopened(&rest, kept)
         };
         let open = open.into_iter().map(reopened).collect();
         let position = (kept.step, kept.undone);
-        let mut history = History::restored(position, steps, open, kept.quota);
+        let mut history = History::restored(position, steps, open, kept.quotas.quota);
         history.note_changed_surfaces(kept.has_changed_surfaces);
-        Ok(Self {
-            scene,
-            optics,
-            surfaces,
-            brushes,
-            backend: Backend::default(),
-            accounts: Accounts::restored(
-                kept.ledger,
-                [kept.steps, kept.footprint_cells],
-                kept.span_ns,
-            ),
+        Past {
             history,
-            versions: Versions::restored(restored.named, kept.line),
-            clock: kept.clock,
-            record: RecordState::restored(kept.record_quota, restored.beginning),
+            versions: Versions::restored(self.named, kept.line),
+            record: RecordState::restored(kept.quotas.record_quota, self.beginning),
+        }
+    }
+}
+
+/// Checks the surfaces of a document's scene.
+fn check(scene: &Scene) -> Result<(), EditError> {
+    for surface in &scene.surfaces {
+        check_size(surface.cells, surface.cell_m)?;
+    }
+    let ids: Vec<u32> = scene.surfaces.iter().map(|surface| surface.id).collect();
+    if ids != [CANVAS, PALETTE] {
+        return Err(EditError::Damaged(
+            "the document has no canvas and palette".to_owned(),
+        ));
+    }
+    Ok(())
+}
+
+impl Painting {
+    /// A painting from its document.
+    ///
+    /// # Errors
+    /// [`EditError`] if the stored parts do not fit together.
+    pub fn restore(
+        mut restored: Restored,
+        library: PaintLibrary,
+        pager: Arc<Pager>,
+    ) -> Result<Self, EditError> {
+        let desk = restored.desk(library, pager)?;
+        let kept = &mut restored.kept;
+        let brushes = std::mem::take(&mut kept.brushes);
+        let brushes = Brushes::restored(brushes, &restored.loads, &desk.surfaces)?;
+        let accounts = Accounts::restored(kept.ledger.clone(), kept.work.clone());
+        Ok(Self {
+            clock: std::mem::take(&mut kept.clock),
+            bench: Workbench {
+                desk,
+                brushes,
+                backend: Backend::default(),
+                accounts,
+                past: restored.past(),
+            },
         })
     }
 }

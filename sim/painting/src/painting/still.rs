@@ -1,31 +1,24 @@
 //! A painting as it is at a moment, to be looked at beside the one that is painted on.
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::tile::{TileId, Version};
 
 use super::Painting;
-use super::brushes::Brushes;
-use super::record::RecordState;
-use super::strokes::backend::Backend;
+use super::bench::Workbench;
 use crate::clock::Clock;
-use crate::history::{Direction, History};
+use crate::error::EditError;
+use crate::history::Direction;
 
 impl Painting {
     /// The painting as it is, with its versions, without brushes and history. Its tiles are shared with
     /// this one, whatever becomes of that; to make it takes as long as to count them.
     pub fn still(&mut self) -> Self {
         self.commit();
+        let mut bench = Workbench::new(self.bench.desk.clone());
+        bench.accounts.clone_from(&self.bench.accounts);
+        bench.past.versions.clone_from(&self.bench.past.versions);
         Self {
-            scene: self.scene.clone(),
-            optics: self.optics.clone(),
-            surfaces: self.surfaces.clone(),
-            brushes: Brushes::default(),
-            backend: Backend::default(),
-            accounts: self.accounts.clone(),
-            history: History::default(),
-            versions: self.versions.clone(),
+            bench,
             clock: Clock::default(),
-            record: RecordState::default(),
         }
     }
 
@@ -34,8 +27,9 @@ impl Painting {
     /// # Errors
     /// [`EditError`] for an unknown version.
     pub fn show_version(&mut self, name: &str) -> Result<(), EditError> {
-        let version = self.versions.find(name)?.clone();
-        for surface in self.surfaces.iter_mut() {
+        let Workbench { desk, past, .. } = &mut self.bench;
+        let version = past.versions.find(name)?;
+        for surface in desk.surfaces.iter_mut() {
             let [across, up] = surface.store.grid();
             for id in (0..up).flat_map(|y| (0..across).map(move |x| TileId { x, y })) {
                 let tile = version.tiles.get(&(surface.id, id)).cloned().flatten();
@@ -43,7 +37,7 @@ impl Painting {
                 surface.store.replace(id, Version { number, tile });
             }
         }
-        self.turn_non_tile_state(Some(&version.rest.layers), Some(&version.rest.materials));
+        desk.restore(Some(&version.rest.layers), Some(&version.rest.materials));
         Ok(())
     }
 
@@ -51,12 +45,12 @@ impl Painting {
     /// before all of them; `None` if there is no such step.
     pub fn still_after(&mut self, step: u64) -> Option<Self> {
         let mut still = self.still();
-        if self.history.is_open(step) {
+        if self.bench.past.history.is_open(step) {
             // Of steps that are not finished none counts as newer.
             return Some(still);
         }
-        let open = self.open_steps();
-        let way = self.history.way_to(step)?;
+        let open = self.bench.open_steps();
+        let way = self.bench.past.history.way_to(step)?;
         let back = way.first().is_none_or(|(way, _)| *way == Direction::Undo);
         let open = open
             .iter()
@@ -67,23 +61,19 @@ impl Painting {
         for (way, step) in open.chain(way) {
             let to = way.ends()[1];
             for (place, change) in &*step.tiles {
-                still.surfaces.put(*place, change.end(to).clone());
+                still
+                    .bench
+                    .desk
+                    .surfaces
+                    .put(*place, change.end(to).clone());
             }
-            layers = step
-                .effects
-                .layers
-                .as_ref()
-                .map(|ends| &ends[to])
-                .or(layers);
-            materials = step
-                .effects
-                .materials
-                .as_ref()
-                .map(|ends| &ends[to])
-                .or(materials);
+            let effects = &step.effects;
+            layers = effects.layers.as_ref().map(|ends| &ends[to]).or(layers);
+            let made = effects.materials.as_ref();
+            materials = made.map(|ends| &ends[to]).or(materials);
         }
         if layers.is_some() || materials.is_some() {
-            still.turn_non_tile_state(layers, materials);
+            still.bench.desk.restore(layers, materials);
         }
         Some(still)
     }
@@ -91,8 +81,15 @@ impl Painting {
     /// True if no paint was ever applied to it, and no version saved: loads of brushes do not count.
     #[must_use]
     pub fn is_blank(&self) -> bool {
-        let untouched = self.history.steps().all(|step| step.tiles.is_empty());
-        self.accounts.steps == 0 && self.versions.iter().len() == 0 && untouched
+        let untouched = self
+            .bench
+            .past
+            .history
+            .steps()
+            .all(|step| step.tiles.is_empty());
+        self.bench.accounts.work.steps == 0
+            && self.bench.past.versions.iter().len() == 0
+            && untouched
     }
 }
 
@@ -105,6 +102,7 @@ mod tests {
     use maulstick_types::values::{FilmThickness, LayerName, Share};
 
     use super::*;
+    use crate::error::HistoryError;
     use crate::picture::picture;
     use crate::setup::PaintingSetup;
 
@@ -146,7 +144,7 @@ mod tests {
         let black = picture(&mut painting, CANVAS);
         let mut still = painting.still();
         lay(&mut painting, "Pyrrole Red");
-        painting.forget("yellow").expect("forgotten");
+        painting.bench.forget("yellow").expect("forgotten");
         assert_eq!(picture(&mut still, CANVAS), black);
         assert!(still.show_version("yelow").is_err());
         still.show_version("yellow").expect("it had it");
@@ -192,7 +190,7 @@ mod tests {
             assert_eq!(painting.report().quanta_missing, 0);
         }
         assert!(pictures[1].1 != pictures[2].1, "a fault would pass");
-        assert_eq!(painting.go_to(77), Err(EditError::NoStep));
+        assert_eq!(painting.go_to(77), Err(HistoryError::NoStep.into()));
         assert!(painting.still_after(77).is_none());
         assert_eq!(painting.history_depth(), (2, 2), "nothing has changed");
     }

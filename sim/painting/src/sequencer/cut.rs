@@ -1,21 +1,17 @@
 //! Undo ahead of the paint: a stroke that still waits to be painted is dropped, for it would be undone.
 
-use crate::edits::Undo;
 use maulstick_types::brush::{BrushState, solve_flags};
-use maulstick_types::command::{After, Command, CommandRequest, Detail, Outcome};
-use maulstick_types::paint::{Entry, StepName};
+use maulstick_types::command::{After, Command, CommandRequest, Outcome};
+use maulstick_types::paint::Entry;
 use maulstick_types::values::BrushName;
-use maulstick_types::{Flags, Header, Origin, name_hash};
+use maulstick_types::{Edit, Flags, Header, Origin, name_hash};
 
-use super::{Replied, Sequencer};
+use super::{NOT_PAINTED, Replied, Sequencer};
+use crate::edits;
 use crate::snapshot::CutStates;
 
 /// Sampling time that the waiting states must span for an undo to drop a stroke, ns; below it the undo waits.
 const CUT_NS: u64 = 500_000_000;
-/// What an undo reports of a stroke of which nothing was painted.
-pub(super) const NOT_PAINTED: Detail = Detail::Step {
-    name: StepName::Unpainted,
-};
 
 /// The stroke that ends a queue of states.
 struct LastStroke {
@@ -46,9 +42,9 @@ impl Sequencer {
     ) -> Replied {
         match self.cut_by(&request, queued) {
             None => self.command(request),
-            Some(Cut::Begun { brush }) => {
+            Some(Cut::Begun { undo }) => {
                 // What another brush did meanwhile is newer, and not meant.
-                request.command = Undo { brush: Some(brush) }.into();
+                request.command = undo.into();
                 self.command(request)
             }
             Some(Cut::Whole(outcome)) => Replied {
@@ -66,16 +62,17 @@ impl Sequencer {
         request: &CommandRequest,
         queued: impl Iterator<Item = (&'a Header, &'a BrushState)>,
     ) -> Option<Cut> {
-        let Undo { brush: of } = request.command.edit()?;
+        let Command::Edit(edit) = &request.command else {
+            return None;
+        };
+        let edit = edits::read(edit).ok()?;
         let after = request.after.as_ref()?;
         let origin = Origin {
             source: after.brush,
             epoch: after.epoch,
         };
         let brush = BrushName::new(self.painting.brush_of(origin.source)?).ok()?;
-        if of.as_ref().is_some_and(|of| *of != brush) || self.is_known(request) {
-            return None;
-        }
+        let undo = edit.undo_of(&brush).filter(|_| !self.is_known(request))?;
         let before: Vec<_> = queued
             .filter(|(header, state)| {
                 header.seq <= after.sequence
@@ -109,7 +106,7 @@ impl Sequencer {
             whole: !is_begun,
         });
         if is_begun {
-            return Some(Cut::Begun { brush });
+            return Some(Cut::Begun { undo });
         }
         let outcome = Outcome::Done {
             journal,
@@ -123,7 +120,10 @@ impl Sequencer {
     fn waits_within(&self, origin: Origin, state: u64) -> bool {
         self.waiting.iter().any(|request| {
             let after = request.after.as_ref();
-            let is_undo = matches!(&request.command, Command::Edit(edit) if edit.is::<Undo>());
+            let is_undo = match &request.command {
+                Command::Edit(edit) => edits::read(edit).is_ok_and(|edit| edit.is_undo()),
+                _ => false,
+            };
             let own = |after: &&After| (after.brush, after.epoch) == (origin.source, origin.epoch);
             !is_undo
                 && after
@@ -172,8 +172,8 @@ enum Cut {
     Whole(Outcome),
     /// The rest of a stroke that is painted in part.
     Begun {
-        /// Its brush.
-        brush: BrushName,
+        /// What takes back that part.
+        undo: Edit,
     },
 }
 

@@ -1,7 +1,12 @@
 //! Journal records as a document saves them: accepted commands and states, to be accepted again.
 
+use std::sync::Arc;
+
 use maulstick_brush::BrushFile;
-use maulstick_canvas::EditError;
+use maulstick_canvas::assets::Assets;
+use maulstick_canvas::page::Pager;
+use maulstick_canvas::tile::Version;
+use maulstick_optics::PaintLibrary;
 use maulstick_types::Edit;
 use maulstick_types::brush::{BRUSHES_MOST, BrushState};
 use maulstick_types::command::{Command, CommandRequest, Outcome, TakeCommand};
@@ -9,11 +14,12 @@ use maulstick_types::paint::{Decision, Entry};
 use maulstick_types::values::BrushName;
 use maulstick_types::{Header, Mixture, Origin};
 
-use super::Sequencer;
-use super::cut::NOT_PAINTED;
+use super::{NOT_PAINTED, Sequencer};
+use crate::beginning::Beginning;
 use crate::edits::Applied;
-use crate::painting::Painting;
-use crate::snapshot::SequencerSnapshot;
+use crate::error::{BrushError, EditError};
+use crate::painting::{Painting, Restored};
+use crate::snapshot::{PaintingSnapshot, SequencerSnapshot};
 
 /// The client that runs the sequencer.
 const OWN: u64 = 0;
@@ -158,10 +164,10 @@ impl Sequencer {
     /// Introduces a brush, or gives a known one another file.
     ///
     /// # Errors
-    /// [`EditError::TooManyBrushes`] for a new one where there are [so many](BRUSHES_MOST).
+    /// [`BrushError::TooMany`] for a new one where there are [so many](BRUSHES_MOST).
     pub fn define_brush(&mut self, brush: &str, file: BrushFile) -> Result<(), EditError> {
         if !self.painting.knows_brush(brush) && self.painting.brushes().count() >= BRUSHES_MOST {
-            return Err(EditError::TooManyBrushes(brush.to_owned()));
+            return Err(BrushError::TooMany(brush.to_owned()).into());
         }
         let toml = file.to_toml().unwrap_or_default();
         if self.painting.define_brush(brush, file) {
@@ -267,6 +273,38 @@ impl Sequencer {
             replies: self.replies.clone(),
             held: false,
         }
+    }
+
+    /// The sequencer of a painting as it was at the beginning of its record, to accept its records again; `assets` are
+    /// the pictures and spectra of the painting, later ones among them.
+    ///
+    /// # Errors
+    /// [`EditError`] if the stored parts do not fit together.
+    pub fn begun(
+        beginning: Arc<Beginning>,
+        assets: Assets,
+        library: PaintLibrary,
+        pager: Arc<Pager>,
+    ) -> Result<Self, EditError> {
+        let number = beginning.painting.versions;
+        let tiles = beginning.tiles.iter().map(|(place, tile)| {
+            let tile = tile.clone();
+            (*place, Version { number, tile })
+        });
+        let restored = Restored {
+            tiles: tiles.collect(),
+            loads: beginning.loads.clone(),
+            steps: beginning.open.clone(),
+            named: beginning.named.clone(),
+            embedded: assets,
+            kept: PaintingSnapshot {
+                undone: Vec::new(),
+                ..beginning.painting.clone()
+            },
+            beginning: Some(Arc::clone(&beginning)),
+        };
+        let painting = Painting::restore(restored, library, pager)?;
+        Ok(Self::restored(painting, beginning.sequencer.clone()))
     }
 
     /// A sequencer restored from its snapshot.

@@ -1,6 +1,6 @@
 //! A recorded session accepted again, record by record, in a painting that goes on.
 
-use maulstick_canvas::EditError;
+use crate::error::EditError;
 use maulstick_types::Flags;
 use maulstick_types::command::{Command, TakeCommand};
 use maulstick_types::paint::{Decision, Entry};

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::tile::TileId;
 use maulstick_painting::edits::{Convert, Dry};
 use maulstick_painting::picture::picture;
-use maulstick_painting::{Painting, PaintingSetup, Sequencer};
+use maulstick_painting::{EditError, Painting, PaintingSetup, Sequencer, SurfaceError};
 use maulstick_types::brush::Solve;
 use maulstick_types::scene::{CANVAS, PALETTE};
 use maulstick_types::values::{ModelName, Share};
@@ -132,12 +131,12 @@ fn an_unknown_model_and_the_same_one_are_refused_and_change_nothing() {
     let mut painting = painted("dab");
     let before = (painting.scene().clone(), picture(&mut painting, CANVAS).rgb);
     let unknown = painting.apply(convert(CANVAS, "watercolour"));
-    assert!(matches!(unknown, Err(EditError::NoModel { .. })));
+    assert!(matches!(unknown, Err(EditError::Model(_))));
     let same = painting.apply(convert(CANVAS, "dab"));
-    assert_eq!(same, Err(EditError::SameModel("dab")));
+    assert_eq!(same, Err(SurfaceError::SameModel("dab").into()));
     assert_eq!(
         painting.apply(convert(7, "dab")),
-        Err(EditError::NoSurface(7))
+        Err(SurfaceError::Unknown(7).into())
     );
     let after = (painting.scene().clone(), picture(&mut painting, CANVAS).rgb);
     assert!(before == after);

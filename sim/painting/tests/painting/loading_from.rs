@@ -1,9 +1,8 @@
 //! Loading from a place: a brush takes up the mixture there, wet, dry or in a well.
 
 use maulstick_brush::BrushFile;
-use maulstick_canvas::EditError;
 use maulstick_painting::edits::{Dry, LoadFrom, PaintingEdit as _, Scrape, Undo};
-use maulstick_painting::{Applied, Painting, PaintingSetup};
+use maulstick_painting::{Applied, EditError, Painting, PaintingSetup, SurfaceError};
 use maulstick_types::Mixture;
 use maulstick_types::scene::{CANVAS, PALETTE, WellKind};
 use maulstick_types::values::{BrushName, Distance, ThinnerShare};
@@ -49,7 +48,7 @@ fn what_lies_at_a_place_is_loaded_wet_or_dry() {
     let mut painting = with_brush();
     let at = [8e-3, 6e-3];
     let bare = load_from(&mut painting, CANVAS, at);
-    assert_eq!(bare, Err(EditError::NoPaintThere { at_m: at }));
+    assert_eq!(bare, Err(SurfaceError::NoPaintThere { at_m: at }.into()));
     let green = "Cobalt Blue=0.75,Hansa Yellow Opaque=0.25";
     fill(green, 60.0).apply(&mut painting).expect("a film");
     let before = painting.report().quanta_missing;

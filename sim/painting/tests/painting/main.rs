@@ -3,7 +3,6 @@
 mod books;
 mod converting;
 mod cut;
-mod dab;
 mod drying;
 mod extremes;
 mod hairline;

@@ -3,10 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use maulstick_brush::palette_place::{mirrored, size_m};
-use maulstick_canvas::EditError;
 use maulstick_painting::edits::{Dry, PaintingEdit as _, Redo, Scrape, Undo, Wells};
 use maulstick_painting::setup::wells_of;
-use maulstick_painting::{Painting, PaintingSetup};
+use maulstick_painting::{LayerError, Painting, PaintingSetup};
 use maulstick_types::Mixture;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::{CANVAS, PALETTE, Surface, Well, WellKind};
@@ -27,7 +26,7 @@ fn wet_paint_goes_and_comes_back_by_undo_and_dry_paint_stays() {
         ..PaintingSetup::default()
     });
     let nothing = scrape(CANVAS, None).apply(&mut painting);
-    assert_eq!(nothing, Err(EditError::NothingWet(None)));
+    assert_eq!(nothing, Err(LayerError::NothingWet(None).into()));
     assert_eq!(painting.history_depth().0, 0, "no step");
     fill("Bone Black", 30.0).apply(&mut painting).expect("laid");
     Dry::whole(CANVAS).apply(&mut painting).expect("dried");
@@ -164,26 +163,40 @@ fn stirred() -> (Painting, Surface) {
     (painting, palette)
 }
 
-#[test]
-fn paint_moves_with_its_well_quantum_by_quantum() {
-    let (mut painting, palette) = stirred();
-    let before = on_palette(&painting);
-    let in_well = |cell: &(usize, u32, u32), well: &Well| {
-        let [dx, dy] = [0, 1].map(|i| {
-            let at = f64::from([cell.1, cell.2][i]) + 0.5;
-            at * palette.cell_m - well.center_m[i]
-        });
-        dx * dx + dy * dy < well.radius_m * well.radius_m
-    };
-    let old = &palette.wells[2];
-    let heap: Vec<_> = before.keys().filter(|cell| in_well(cell, old)).collect();
-    assert!(heap.len() > 500, "{}", heap.len());
+/// True if a cell of a slot is in a well.
+fn is_in(cell: &(usize, u32, u32), well: &Well, cell_m: f64) -> bool {
+    let [dx, dy] = [0, 1].map(|i| {
+        let at = f64::from([cell.1, cell.2][i]) + 0.5;
+        at * cell_m - well.center_m[i]
+    });
+    dx * dx + dy * dy < well.radius_m * well.radius_m
+}
+
+/// Paint in the middle of the board.
+fn board(cells: &BTreeMap<(usize, u32, u32), f32>) -> BTreeMap<(usize, u32, u32), f32> {
+    let cells = cells.iter().filter(|(cell, _)| cell.1 < 300);
+    cells.map(|(cell, count)| (*cell, *count)).collect()
+}
+
+/// The wells of a palette with one more before them.
+fn one_more(palette: &Surface) -> Vec<Well> {
     let mut mixtures: Vec<Mixture> = ["Cobalt Blue"].map(Mixture::pure).to_vec();
     mixtures.extend(palette.wells.iter().filter_map(|well| match &well.kind {
         WellKind::Paint { mixture } => Some(mixture.clone()),
         _ => None,
     }));
-    let wells = wells_of(&mixtures, palette.cells, palette.cell_m);
+    wells_of(&mixtures, palette.cells, palette.cell_m)
+}
+
+#[test]
+fn paint_moves_with_its_well_quantum_by_quantum() {
+    let (mut painting, palette) = stirred();
+    let before = on_palette(&painting);
+    let in_well = |cell: &(usize, u32, u32), well: &Well| is_in(cell, well, palette.cell_m);
+    let old = &palette.wells[2];
+    let heap: Vec<_> = before.keys().filter(|cell| in_well(cell, old)).collect();
+    assert!(heap.len() > 500, "{}", heap.len());
+    let wells = one_more(&palette);
     let new = &wells[3];
     let steps = painting.history_depth().0;
     let edit = Wells::new(PALETTE, wells.clone()).expect("valid");
@@ -201,10 +214,6 @@ fn paint_moves_with_its_well_quantum_by_quantum() {
         assert_eq!(after.get(&to), before.get(*cell), "{cell:?}");
     }
     // In the middle of the board nothing has changed, and beside the well lies only what lay beside it before.
-    let board = |cells: &BTreeMap<(usize, u32, u32), f32>| -> BTreeMap<_, _> {
-        let cells = cells.iter().filter(|(cell, _)| cell.1 < 300);
-        cells.map(|(cell, count)| (*cell, *count)).collect()
-    };
     assert!(!board(&before).is_empty() && board(&before) == board(&after));
     let moved: BTreeSet<_> = heap
         .iter()

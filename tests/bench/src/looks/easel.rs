@@ -1,12 +1,11 @@
 //! A canvas, a brush and a hand for the measurements of looks, and the films that they leave.
 
 use maulstick_brush::BrushFile;
-use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_num::atan2;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::edits::{Dry, Load};
-use maulstick_painting::{Painting, PaintingSetup};
+use maulstick_painting::{EditError, Painting, PaintingSetup};
 use maulstick_rig::UserError;
 use maulstick_session::Offline;
 use maulstick_types::Edit;

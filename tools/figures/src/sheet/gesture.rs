@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use maulstick_canvas::EditError;
+use maulstick_painting::EditError;
 use maulstick_session::Offline;
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 

@@ -21,7 +21,6 @@ use maulstick_brush::BrushFile;
 use maulstick_brush::file::library::LIBRARY;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::edits::Load;
-use maulstick_painting::paint_error;
 use maulstick_painting::picture::picture;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_rig::UserError;
@@ -153,8 +152,8 @@ impl Panel {
 }
 
 fn mixture_of(text: &str) -> Result<Mixture, UserError> {
-    let error = |error| refused(paint_error(maulstick_optics::PaintError::Mixture(error)));
-    text.parse().map_err(error)
+    text.parse()
+        .map_err(|error| refused(maulstick_optics::PaintError::Mixture(error)))
 }
 
 /// The marks of one brush, on cells of this side.

@@ -1,6 +1,7 @@
 //! The flow around a brush of the paint model `stokes`, found on the device window by window.
 
-use crate::flow_backend::{FlowBackend, FlowError, FlowWindow};
+use crate::coarse::FlowWindow;
+use crate::flow_backend::{FlowBackend, FlowError};
 use maulstick_stokes::domain::LEAST_FILL;
 use maulstick_stokes::flow::{Effort, layers_with_paint};
 use maulstick_stokes::grid::Grid;

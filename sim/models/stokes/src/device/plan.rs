@@ -97,6 +97,30 @@ pub(crate) fn sides(grid: &Grid) -> [[u32; 3]; 2] {
     })
 }
 
+/// Levels of a window, whose words are added; `None` where they are too many.
+fn levels(finest: &Grid, words: &mut u64) -> Option<Vec<Level>> {
+    let mut levels = Vec::new();
+    let mut next = Some(*finest);
+    while let Some(grid) = next {
+        let (coarse, can) = halved(&grid);
+        let is_coarsest = levels.len() + 1 == MOST_LEVELS
+            || grid.cells.iter().all(|cells| *cells <= COARSEST_CELLS)
+            || can == [0; 3];
+        levels.push(Level {
+            cells: grid.cells.map(|cells| cells as u32),
+            len: grid.len() as u32,
+            halved: if is_coarsest { [0; 3] } else { can },
+            base: *words as u32,
+        });
+        *words += 4 * OF_COMPONENT[usize::from(levels.len() > 1)] * grid.len() as u64;
+        if *words > u64::from(u32::MAX) {
+            return None;
+        }
+        next = (!is_coarsest).then_some(coarse);
+    }
+    Some(levels)
+}
+
 impl Plan {
     /// The layout for so many directions; one workgroup does all levels of so many cells and fewer.
     ///
@@ -128,25 +152,9 @@ impl Plan {
         if grid.is_empty() || words > u64::from(u32::MAX) {
             return Err(too_large(words));
         }
-        let mut levels = Vec::new();
-        let mut next = Some(*grid);
-        while let Some(grid) = next {
-            let (coarse, can) = halved(&grid);
-            let is_coarsest = levels.len() + 1 == MOST_LEVELS
-                || grid.cells.iter().all(|cells| *cells <= COARSEST_CELLS)
-                || can == [0; 3];
-            levels.push(Level {
-                cells: grid.cells.map(|cells| cells as u32),
-                len: grid.len() as u32,
-                halved: if is_coarsest { [0; 3] } else { can },
-                base: words as u32,
-            });
-            words += 4 * OF_COMPONENT[usize::from(levels.len() > 1)] * grid.len() as u64;
-            if words > u64::from(u32::MAX) {
-                return Err(too_large(words));
-            }
-            next = (!is_coarsest).then_some(coarse);
-        }
+        let Some(levels) = levels(grid, &mut words) else {
+            return Err(too_large(words));
+        };
         let partials = words;
         let mut plan = Self {
             grid: *grid,

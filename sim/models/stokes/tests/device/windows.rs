@@ -6,8 +6,9 @@ use maulstick_stokes::domain::Solids;
 use maulstick_stokes::flow::{Conditions, Effort, Flow};
 use maulstick_stokes::grid::Grid;
 use maulstick_stokes::rheology::Paint;
+use maulstick_stokes_paint::coarse::FlowWindow;
 use maulstick_stokes_paint::device::{GpuBrushFlow, GpuFlow, Tuning};
-use maulstick_stokes_paint::flow_backend::{FlowBackend as _, FlowError, FlowWindow};
+use maulstick_stokes_paint::flow_backend::{FlowBackend as _, FlowError};
 
 use crate::device;
 

@@ -1,11 +1,11 @@
 //! Takes all paint off a brush.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
 use maulstick_types::values::{BrushName, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Clean a brush
@@ -38,10 +38,11 @@ impl Form for Clean {
 
 impl PaintingEdit for Clean {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let brush = painting.brushes.at(&self.brush)?;
-        painting.begin_step(StepName::Clean, Some(brush));
-        painting.brushes[brush].empty(&mut painting.accounts.ledger);
-        painting.end_step_of(brush);
+        let bench = &mut painting.bench;
+        let brush = bench.brushes.at(&self.brush)?;
+        bench.begin_step(StepName::Clean, Some(brush));
+        bench.brushes[brush].empty(&mut bench.accounts.ledger);
+        bench.end_step_of(brush);
         Ok(Applied::Done)
     }
 

@@ -1,11 +1,11 @@
 //! Sets the mode of a brush.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::scene::{BrushHandling, BrushMode, MARKER_FLOW};
 use maulstick_types::values::{BrushName, FilmThickness, MarkerFlow, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Set the mode of a brush: sponge, marker, sampler, vacuum, …
@@ -87,14 +87,15 @@ impl Form for Handle {
 
 impl PaintingEdit for Handle {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.brushes.at(&self.brush)?;
+        painting.bench.brushes.at(&self.brush)?;
         let handling = BrushHandling::from(self.clone());
-        let handlings = &mut painting.scene.handlings;
+        let scene = &mut painting.bench.desk.scene;
+        let handlings = &mut scene.handlings;
         handlings.retain(|other| other.brush != handling.brush);
         if handling != BrushHandling::normal(&handling.brush) {
             handlings.push(handling);
         }
-        painting.scene.version += 1;
+        scene.version += 1;
         Ok(Applied::Done)
     }
 

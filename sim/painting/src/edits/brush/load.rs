@@ -1,12 +1,12 @@
 //! Loads a brush with paint.
 
-use maulstick_canvas::EditError;
 use maulstick_model::brush::load::Half;
 use maulstick_types::paint::StepName;
 use maulstick_types::values::{BrushName, ValueError};
 use maulstick_types::{EditFields, Mixture};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 use crate::painting::brushes::loads::named;
 
@@ -62,18 +62,15 @@ impl Form for Load {
 
 impl PaintingEdit for Load {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let brush = painting.brushes.at(&self.brush)?;
+        let bench = &mut painting.bench;
+        let brush = bench.brushes.at(&self.brush)?;
         let mixtures: Vec<Mixture> = std::iter::once(&self.mixture)
             .chain(&self.beside)
             .cloned()
             .collect();
-        let slots = painting.optics.all_slots(&mut painting.scene, &mixtures)?;
-        painting.begin_step(
-            StepName::Load {
-                paints: named(&mixtures),
-            },
-            Some(brush),
-        );
+        let slots = bench.desk.all_slots(&mixtures)?;
+        let paints = named(&mixtures);
+        bench.begin_step(StepName::Load { paints }, Some(brush));
         let parts: Vec<_> = match &slots[..] {
             [both] => vec![(&both[..], Half::Both)],
             halves => halves
@@ -82,9 +79,10 @@ impl PaintingEdit for Load {
                 .zip([Half::Left, Half::Right])
                 .collect(),
         };
-        let seed = painting.brushes[brush].next_seed();
-        painting.fill(brush, &parts, seed);
-        painting.end_step_of(brush);
+        let own = &mut bench.brushes[brush];
+        let seed = own.next_seed();
+        own.fill(&parts, &bench.desk, seed, &mut bench.accounts.ledger);
+        bench.end_step_of(brush);
         Ok(Applied::Done)
     }
 

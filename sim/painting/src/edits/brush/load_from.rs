@@ -1,6 +1,5 @@
 //! Loads a brush with the mixture that lies at a place.
 
-use maulstick_canvas::EditError;
 use maulstick_optics::thinned;
 use maulstick_types::EditFields;
 use maulstick_types::scene::CANVAS;
@@ -8,6 +7,7 @@ use maulstick_types::values::{BrushName, Distance, ThinnerShare, ValueError};
 use serde::{Deserialize as _, Deserializer};
 
 use crate::edits::{Applied, Form, Load, PaintingEdit, StepForm, read, words};
+use crate::error::{EditError, SurfaceError};
 use crate::painting::Painting;
 use crate::painting::brushes::loads::{mixture_of, well_at};
 
@@ -95,14 +95,15 @@ impl Form for LoadFrom {
 
 impl PaintingEdit for LoadFrom {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.brushes.at(&self.brush)?;
-        let on = painting.surfaces.at(self.surface)?;
+        painting.bench.brushes.at(&self.brush)?;
+        let on = painting.bench.desk.surfaces.at(self.surface)?;
         painting.commit();
+        let desk = &painting.bench.desk;
         let at_m = [self.x, self.y].map(Distance::get);
-        let counts = painting.surfaces[on].counts_at(at_m);
-        let mixture = mixture_of(&counts, &painting.scene)
-            .or_else(|| well_at(&painting.scene.surfaces[on], at_m))
-            .ok_or(EditError::NoPaintThere { at_m })?;
+        let counts = desk.surfaces[on].counts_at(at_m);
+        let mixture = mixture_of(&counts, &desk.scene)
+            .or_else(|| well_at(&desk.scene.surfaces[on], at_m))
+            .ok_or(SurfaceError::NoPaintThere { at_m })?;
         let mixture = thinned(&mixture, self.thinner);
         Load {
             mixture: mixture.clone(),

@@ -1,11 +1,11 @@
 //! Makes a brush stiffer or softer than its file says.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::scene::Tuning;
 use maulstick_types::values::{BrushName, Stiffness, ValueError, Wetness};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Make a brush stiffer or softer
@@ -75,11 +75,12 @@ impl Form for Tune {
 impl PaintingEdit for Tune {
     /// Makes a brush stiffer or softer; who solves it hears of it by the scene.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.brushes.at(&self.brush)?;
-        let tunings = &mut painting.scene.tunings;
+        painting.bench.brushes.at(&self.brush)?;
+        let scene = &mut painting.bench.desk.scene;
+        let tunings = &mut scene.tunings;
         tunings.retain(|other| other.brush != self.brush.as_str());
         tunings.push(self.clone().into());
-        painting.scene.version += 1;
+        scene.version += 1;
         Ok(Applied::Done)
     }
 

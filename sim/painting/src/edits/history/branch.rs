@@ -1,10 +1,10 @@
 //! Begins a version from another one.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::values::{ValueError, VersionName};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Begin a version from another one, and return the painting to it
@@ -34,9 +34,9 @@ impl Form for Branch {
 
 impl PaintingEdit for Branch {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting
-            .branch(&self.from, &self.name)
-            .map(|()| Applied::Done)
+        let Painting { bench, clock } = painting;
+        bench.branch(clock, &self.from, &self.name)?;
+        Ok(Applied::Done)
     }
 
     fn log_words(&self) -> String {

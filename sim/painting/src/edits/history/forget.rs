@@ -1,9 +1,9 @@
 //! Deletes a version.
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::values::{ValueError, VersionName};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Delete a version
@@ -30,7 +30,8 @@ impl Form for Forget {
 
 impl PaintingEdit for Forget {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.forget(&self.name).map(|()| Applied::Done)
+        painting.bench.forget(&self.name)?;
+        Ok(Applied::Done)
     }
 
     fn log_words(&self) -> String {

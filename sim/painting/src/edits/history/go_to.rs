@@ -1,10 +1,10 @@
 //! Takes steps back, or does them again, up to one of them.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::values::ValueError;
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Undo or redo steps until one of them is the newest that is done

@@ -1,9 +1,9 @@
 //! Keeps the painting as a version.
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::values::{ValueError, VersionName};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Keep the painting as a version
@@ -35,7 +35,8 @@ impl Form for Keep {
 
 impl PaintingEdit for Keep {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.keep(&self.name).map(|()| Applied::Done)
+        painting.bench.keep(&self.name)?;
+        Ok(Applied::Done)
     }
 
     fn log_words(&self) -> String {

@@ -1,10 +1,10 @@
 //! Does the newest undone step again.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::values::{BrushName, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Redo the newest undone step

@@ -1,9 +1,9 @@
 //! Makes the painting as it was in a version.
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::values::{ValueError, VersionName};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Return the painting to a version; this can be undone
@@ -35,7 +35,9 @@ impl Form for ReturnTo {
 
 impl PaintingEdit for ReturnTo {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.return_to(&self.name).map(|()| Applied::Done)
+        let Painting { bench, clock } = painting;
+        bench.return_to(clock, &self.name)?;
+        Ok(Applied::Done)
     }
 
     fn log_words(&self) -> String {

@@ -1,9 +1,9 @@
 //! Takes the newest step back.
-use maulstick_canvas::EditError;
-use maulstick_types::EditFields;
 use maulstick_types::values::{BrushName, ValueError};
+use maulstick_types::{Edit, EditFields};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Undo the newest step
@@ -40,6 +40,16 @@ impl PaintingEdit for Undo {
 
     fn log_words(&self) -> String {
         format!("undo{}", words::of_brush(self.brush.as_ref()))
+    }
+
+    fn is_undo(&self) -> bool {
+        true
+    }
+
+    fn undo_of(&self, brush: &BrushName) -> Option<Edit> {
+        let is_meant = self.brush.as_ref().is_none_or(|own| own == brush);
+        let brush = Some(brush.clone());
+        is_meant.then(|| Self { brush }.into())
     }
 
     fn reply(&self) -> Option<&'static str> {

@@ -1,14 +1,14 @@
 //! Dries wet paint, at once or while time goes by.
 
-use maulstick_canvas::EditError;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{LayerName, Share, Ticks, ValueError};
 use maulstick_types::{EditFields, Region};
 
+use crate::clock::{Drying, TICKS_A_SECOND};
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::{EditError, LayerError};
 use crate::painting::Painting;
-use crate::painting::layers::next_layer;
 
 /// Dry the wet paint into a new layer
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -57,6 +57,33 @@ impl Dry {
             surface,
         }
     }
+
+    /// Has the wet paint dry evenly into one new layer over a time.
+    fn begin(&self, over: Ticks, painting: &mut Painting) -> Result<Applied, EditError> {
+        let Painting { bench, clock } = painting;
+        let region = self.region.as_ref();
+        let (on, part) = bench.desk.surfaces.part(self.surface, region)?;
+        if clock.dryings.iter().any(|it| it.surface == self.surface) {
+            return Err(LayerError::Drying.into());
+        }
+        bench.commit();
+        if !bench.desk.surfaces[on].is_wet(&part) {
+            return Err(LayerError::NothingWet(region.cloned()).into());
+        }
+        let ticks = over.get();
+        clock.dryings.push(Drying {
+            surface: self.surface,
+            region: region.cloned(),
+            name: self.layer.clone().map_or(String::new(), Into::into),
+            layer: None,
+            ticks,
+            elapsed: 0,
+            reached: 0,
+            round: None,
+        });
+        let seconds = f64::from(ticks) / f64::from(TICKS_A_SECOND);
+        Ok(Applied::Drying(seconds))
+    }
 }
 
 impl EditFields for Dry {
@@ -90,21 +117,23 @@ impl PaintingEdit for Dry {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         self.check_idle()?;
         if let Some(over) = self.over {
-            return painting.dry_over(self, over);
+            return self.begin(over, painting);
         }
-        painting.close_windows();
-        let (on, part) = painting.surfaces.part(self.surface, self.region.as_ref())?;
-        let number = next_layer(&painting.scene);
-        let dried = painting.surfaces[on].dried(&part, number, self.share.get());
+        let Painting { bench, clock } = painting;
+        bench.close_windows();
+        let surfaces = &bench.desk.surfaces;
+        let (on, part) = surfaces.part(self.surface, self.region.as_ref())?;
+        let number = bench.desk.next_layer();
+        let dried = surfaces[on].dried(&part, number, self.share.get());
         if dried.is_empty() {
-            return Err(EditError::NothingWet(self.region.clone()));
+            return Err(LayerError::NothingWet(self.region.clone()).into());
         }
-        painting.clock.stop(Some(self.surface));
-        painting.begin_step(StepName::Dry, None);
-        painting.put_changed(on, dried);
+        clock.stop(Some(self.surface));
+        bench.begin_step(StepName::Dry, None);
+        bench.put_changed(on, dried);
         let name = self.layer.as_deref().unwrap_or_default();
-        let layer = painting.add_layer(number, name);
-        painting.end_own_step();
+        let layer = bench.desk.add_layer(number, name);
+        bench.end_own_step();
         Ok(Applied::Dried(layer))
     }
 
@@ -130,13 +159,13 @@ impl PaintingEdit for Dry {
 
     fn check_idle(&self) -> Result<(), ValueError> {
         // Over a time all that is wet dries.
-        match self.over.is_some() && self.share != Share::WHOLE {
-            true => Err(ValueError::Idle {
+        if self.over.is_some() && self.share != Share::WHOLE {
+            return Err(ValueError::Idle {
                 option: "a share below 1",
                 with: "a time over which all wet paint dries".to_owned(),
-            }),
-            false => Ok(()),
+            });
         }
+        Ok(())
     }
 }
 

@@ -1,11 +1,11 @@
 //! Gives a dry layer another name.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
 use maulstick_types::values::{LayerName, ValueError};
 
 use crate::edits::{Applied, Form, LayerRef, PaintingEdit, StepForm};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Give a dry layer another name
@@ -36,13 +36,13 @@ impl Form for NameLayer {
 impl PaintingEdit for NameLayer {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let number = self.layer;
-        let place = LayerRef::Number { number }.place_in(&painting.scene)?;
-        painting.begin_step(StepName::LayerName, None);
-        self.name
-            .trim()
-            .clone_into(&mut painting.scene.layers[place].name);
-        painting.scene.version += 1;
-        painting.end_own_step();
+        let bench = &mut painting.bench;
+        let place = LayerRef::Number { number }.place_in(&bench.desk.scene)?;
+        bench.begin_step(StepName::LayerName, None);
+        let scene = &mut bench.desk.scene;
+        self.name.trim().clone_into(&mut scene.layers[place].name);
+        scene.version += 1;
+        bench.end_own_step();
         Ok(Applied::Done)
     }
 

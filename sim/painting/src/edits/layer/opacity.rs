@@ -3,12 +3,12 @@
 use std::fmt;
 use std::str::FromStr;
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
 use maulstick_types::values::{LayerName, OpacityFactor, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
+use crate::error::{EditError, LayerError};
 use crate::painting::Painting;
 use maulstick_types::scene::Scene;
 
@@ -49,7 +49,7 @@ impl fmt::Display for LayerRef {
 
 impl LayerRef {
     /// Its place in a scene.
-    pub(crate) fn place_in(&self, scene: &Scene) -> Result<usize, EditError> {
+    pub(crate) fn place_in(&self, scene: &Scene) -> Result<usize, LayerError> {
         let layers = &scene.layers;
         let numbered = |number: u32| layers.iter().position(|layer| layer.number == number);
         let found = match self {
@@ -59,7 +59,7 @@ impl LayerRef {
                 .rposition(|layer| layer.name == name.as_str())
                 .or_else(|| numbered(name.parse().ok()?)),
         };
-        found.ok_or_else(|| EditError::NoLayer {
+        found.ok_or_else(|| LayerError::Unknown {
             which: self.to_string(),
             known: layers
                 .iter()
@@ -115,11 +115,12 @@ impl Form for Opacity {
 impl PaintingEdit for Opacity {
     /// Makes a dry layer more or less opaque: a factor on its optical thickness, never on its height.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let place = self.layer.place_in(&painting.scene)?;
-        painting.begin_step(StepName::LayerOpacity, None);
-        painting.scene.layers[place].opacity = self.opacity.get();
-        painting.layers_changed();
-        painting.end_own_step();
+        let bench = &mut painting.bench;
+        let place = self.layer.place_in(&bench.desk.scene)?;
+        bench.begin_step(StepName::LayerOpacity, None);
+        bench.desk.scene.layers[place].opacity = self.opacity.get();
+        bench.desk.layers_changed();
+        bench.end_own_step();
         Ok(Applied::Done)
     }
 

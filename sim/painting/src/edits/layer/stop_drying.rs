@@ -1,11 +1,11 @@
 //! Ends a drying.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::ValueError;
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::{EditError, LayerError};
 use crate::painting::Painting;
 
 /// Stop a running drying; what is still wet stays wet
@@ -35,9 +35,10 @@ impl Form for StopDrying {
 
 impl PaintingEdit for StopDrying {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        match painting.clock.stop(Some(self.surface)) {
-            true => Ok(Applied::Done),
-            false => Err(EditError::NotDrying),
+        if painting.clock.stop(Some(self.surface)) {
+            Ok(Applied::Done)
+        } else {
+            Err(LayerError::NotDrying.into())
         }
     }
 

@@ -5,7 +5,6 @@ use std::fmt;
 use std::num::NonZeroU32;
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::ValueError;
@@ -13,7 +12,9 @@ use maulstick_types::{EditFields, Region};
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::{EditError, LayerError};
 use crate::painting::Painting;
+use crate::painting::desk::Desk;
 use crate::painting::surfaces::Changed;
 
 /// Make dry layers wet again
@@ -98,20 +99,23 @@ impl PaintingEdit for Wet {
     /// empty afterwards is removed from the scene. A layer whose opacity is not 1 is refused, for wet paint has no
     /// opacity.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let (on, part) = painting.surfaces.part(self.surface, self.region.as_ref())?;
-        painting.close_windows();
-        let surface = &painting.surfaces[on];
+        let Painting { bench, clock } = painting;
+        let region = self.region.as_ref();
+        let (on, part) = bench.desk.surfaces.part(self.surface, region)?;
+        bench.close_windows();
+        let surface = &bench.desk.surfaces[on];
         let numbers = surface.newest_on(&part, self.layers);
         let Some(least) = numbers.first().copied() else {
-            return Err(EditError::NothingDry(self.region.clone()));
+            return Err(LayerError::NothingDry(self.region.clone()).into());
         };
-        let known = painting.scene.layers.iter();
+        let known = bench.desk.scene.layers.iter();
         let chosen = known.filter(|layer| numbers.contains(&layer.number));
         if let Some(veiled) = chosen.clone().find(|layer| layer.opacity != 1.0) {
-            return Err(EditError::Veiled {
+            return Err(LayerError::Veiled {
                 number: veiled.number,
                 name: veiled.name.clone(),
-            });
+            }
+            .into());
         }
         let layers: Vec<String> = chosen.rev().map(|layer| layer.name.clone()).collect();
         let mut full_cells = 0;
@@ -123,13 +127,13 @@ impl PaintingEdit for Wet {
             }
         }
         if tiles.is_empty() {
-            return Err(EditError::NoRoom(self.region.clone()));
+            return Err(LayerError::NoRoom(self.region.clone()).into());
         }
-        painting.clock.stop(Some(self.surface));
-        painting.begin_step(StepName::Wet, None);
-        painting.put_changed(on, tiles);
-        drop_empty_layers(painting, &numbers);
-        painting.end_own_step();
+        clock.stop(Some(self.surface));
+        bench.begin_step(StepName::Wet, None);
+        bench.put_changed(on, tiles);
+        drop_empty_layers(&mut bench.desk, numbers);
+        bench.end_own_step();
         Ok(Applied::Rewet { layers, full_cells })
     }
 
@@ -149,9 +153,9 @@ impl PaintingEdit for Wet {
 }
 
 /// Removes those of `numbers` from the scene that are empty on every surface.
-fn drop_empty_layers(painting: &mut Painting, numbers: &BTreeSet<u32>) {
-    let mut gone = numbers.clone();
-    for (_, version) in painting.surfaces.iter().flat_map(|own| own.store.iter()) {
+fn drop_empty_layers(desk: &mut Desk, numbers: BTreeSet<u32>) {
+    let mut gone = numbers;
+    for (_, version) in desk.surfaces.iter().flat_map(|own| own.store.iter()) {
         let stack = version.tile.as_ref().and_then(|tile| tile.dry());
         let layers = stack.into_iter().flat_map(|stack| stack.layers());
         layers.for_each(|layer| {
@@ -159,11 +163,9 @@ fn drop_empty_layers(painting: &mut Painting, numbers: &BTreeSet<u32>) {
         });
     }
     if !gone.is_empty() {
-        painting
-            .scene
-            .layers
-            .retain(|layer| !gone.contains(&layer.number));
-        painting.layers_changed();
+        let layers = &mut desk.scene.layers;
+        layers.retain(|layer| !gone.contains(&layer.number));
+        desk.layers_changed();
     }
 }
 

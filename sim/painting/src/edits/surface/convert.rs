@@ -1,6 +1,5 @@
 //! Gives the paint of a surface another model.
 
-use maulstick_canvas::EditError;
 use maulstick_models::{AutoRole, auto_model, model_called};
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
@@ -8,8 +7,9 @@ use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{ModelName, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::{EditError, SurfaceError};
+use crate::history::materials;
 use crate::painting::Painting;
-use crate::painting::undo::materials;
 
 /// Convert the canvas to another paint model
 ///
@@ -53,30 +53,31 @@ impl PaintingEdit for Convert {
     /// Gives a surface another paint model: one step that can be undone. Each cell keeps the volume of each of its layers;
     /// where the models differ in colour, its paints are fitted to what was seen. What brushes carry stays as it is.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let on = painting.surfaces.at(self.surface)?;
+        let Painting { bench, clock } = painting;
+        let on = bench.desk.surfaces.at(self.surface)?;
         let to = model_called(&self.model)?;
-        let from = painting.surfaces[on].model;
+        let from = bench.desk.surfaces[on].model;
         if std::ptr::eq(from, to) {
-            return Err(EditError::SameModel(to.name));
+            return Err(SurfaceError::SameModel(to.name).into());
         }
-        painting.close_windows();
-        painting.clock.stop(Some(self.surface));
-        let is_painted = painting.surfaces[on].tiles().next().is_some();
+        bench.close_windows();
+        clock.stop(Some(self.surface));
+        let is_painted = bench.desk.surfaces[on].tiles().next().is_some();
         let colouring = to.shown.colouring();
         if from.shown.colouring() != colouring && is_painted {
-            painting.take_up_wells()?;
+            bench.desk.take_up_wells()?;
         }
-        painting.begin_step(StepName::Model, None);
-        let models = painting.model_names();
-        painting.history.name_models(&models);
-        painting.versions.name_models(&models);
-        let (tiles, distance) = painting.converted(on, colouring);
-        painting.put_converted(on, tiles);
-        let mut materials = materials(&painting.scene);
+        bench.begin_step(StepName::Model, None);
+        let models = bench.desk.surfaces.model_names();
+        bench.past.history.name_models(&models);
+        bench.past.versions.name_models(&models);
+        let (tiles, distance) = bench.desk.converted(on, colouring);
+        bench.put_converted(on, tiles);
+        let mut materials = materials(&bench.desk.scene);
         to.name.clone_into(&mut materials[on].model);
-        painting.set_materials(&materials);
-        painting.end_own_step();
-        let cell_m = painting.surfaces[on].cell_m;
+        bench.desk.set_materials(&materials);
+        bench.end_own_step();
+        let cell_m = bench.desk.surfaces[on].cell_m;
         Ok(Applied::Converted { distance, cell_m })
     }
 

@@ -1,14 +1,19 @@
 //! Lays an even film of wet paint over a surface.
 
-use maulstick_canvas::EditError;
+use maulstick_canvas::quantum::{Counts, QUANTUM_M, SLOTS};
+use maulstick_canvas::tile::TileId;
+use maulstick_types::paint::StepName;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{BrushName, FilmThickness, ValueError};
 use maulstick_types::{EditFields, Mixture};
 use serde::de::{Deserialize as _, Deserializer};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::EditError;
 use crate::ledger::Ledger;
 use crate::painting::Painting;
+use crate::painting::bench::Workbench;
+use crate::painting::surfaces::film::Films;
 
 /// Paint of a film.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -34,6 +39,34 @@ pub struct Fill {
     pub thickness: FilmThickness,
     /// The surface.
     pub surface: u32,
+}
+
+impl Fill {
+    /// Lays the film over a whole surface, but for its wells; from where `book` says.
+    fn lay(
+        &self,
+        on: usize,
+        mixture: &Mixture,
+        book: fn(&mut Ledger, &Counts),
+        bench: &mut Workbench,
+    ) -> Result<(), EditError> {
+        let slots = bench.desk.slots(mixture)?;
+        let mut quanta = [0.0f32; SLOTS];
+        for (slot, share) in slots {
+            quanta[slot] += (share * self.thickness.get() / QUANTUM_M).round() as f32;
+        }
+        bench.begin_step(StepName::Fill, None);
+        let [across, up] = bench.desk.surfaces[on].store.grid();
+        let mut films = Films::default();
+        for y in 0..up {
+            for x in 0..across {
+                let place = (on, TileId { x, y });
+                bench.lay_on(place, |_, slot| quanta[slot], Some(&mut films), book);
+            }
+        }
+        bench.end_own_step();
+        Ok(())
+    }
 }
 
 /// A step of a script.
@@ -96,20 +129,15 @@ impl PaintingEdit for Fill {
     /// Lays an even film of paint from the tubes, or of the colour that a brush carries on the whole; the brush keeps
     /// what it has.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let thickness_m = self.thickness.get();
+        let bench = &mut painting.bench;
+        let on = bench.desk.surfaces.at(self.surface)?;
         match &self.paint {
-            FillPaint::Mixture { mixture } => {
-                painting.lay_from(self.surface, mixture, thickness_m, Ledger::from_tube)?;
-            }
+            FillPaint::Mixture { mixture } => self.lay(on, mixture, Ledger::from_tube, bench)?,
             FillPaint::Carried { brush } => {
-                painting.surfaces.at(self.surface)?;
-                let mixture = painting.carried_mixture(brush)?;
-                painting.lay_from(
-                    self.surface,
-                    &mixture,
-                    thickness_m,
-                    Ledger::from_mode_counts,
-                )?;
+                bench.commit();
+                let brush = &bench.brushes[bench.brushes.at(brush)?];
+                let mixture = brush.mixture(&bench.desk.scene)?;
+                self.lay(on, &mixture, Ledger::from_mode_counts, bench)?;
             }
         }
         Ok(Applied::Done)

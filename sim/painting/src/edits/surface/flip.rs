@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::dry::{DRY_LAYERS_MOST, DryLayer, DryStack};
 use maulstick_canvas::own_plane::{OwnPlane, OwnShape};
 use maulstick_canvas::page::{Page, Pager};
@@ -15,6 +14,7 @@ use maulstick_types::scene::CANVAS;
 use maulstick_types::values::ValueError;
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Flip the canvas left to right, to see the drawing afresh
@@ -47,16 +47,18 @@ impl Form for Flip {
 
 impl PaintingEdit for Flip {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let on = painting.surfaces.at(self.surface)?;
-        if !painting.scene.surfaces[on].wells.is_empty() {
+        let Painting { bench, clock } = painting;
+        let on = bench.desk.surfaces.at(self.surface)?;
+        if !bench.desk.scene.surfaces[on].wells.is_empty() {
             return Err(EditError::Own {
                 what: "a palette is not flipped: its wells would not follow",
                 help: "flip the canvas",
             });
         }
-        painting.close_windows();
-        let surface = &painting.surfaces[on];
-        let mut mirror = Mirror::of(surface.store.cells()[0] as usize, &painting.surfaces.pager);
+        bench.close_windows();
+        let surfaces = &bench.desk.surfaces;
+        let surface = &surfaces[on];
+        let mut mirror = Mirror::of(surface.store.cells()[0] as usize, &surfaces.pager);
         let tile = |id: TileId| surface.store.version(id).tile.as_deref();
         let [across, up] = surface.store.grid();
         let mut tiles = Vec::new();
@@ -81,11 +83,11 @@ impl PaintingEdit for Flip {
                 help: "make layers wet and dry them as one first",
             });
         }
-        painting.clock.stop(Some(self.surface));
+        clock.stop(Some(self.surface));
         let words = "flip".to_owned();
-        painting.begin_step(StepName::Words { words }, None);
-        painting.put_changed(on, tiles);
-        painting.end_own_step();
+        bench.begin_step(StepName::Words { words }, None);
+        bench.put_changed(on, tiles);
+        bench.end_own_step();
         Ok(Applied::Done)
     }
 
@@ -240,7 +242,7 @@ mod tests {
         };
         let mut painting =
             Painting::new(&setup, PaintLibrary::measured().expect("paints")).expect("made");
-        let cell_m = painting.scene.surfaces[0].cell_m;
+        let cell_m = painting.scene().surfaces[0].cell_m;
         let left = |share: f64| Region {
             corner_m: [0.0; 2],
             size_m: [share * f64::from(width) * cell_m, 1.0],

@@ -3,7 +3,6 @@
 use std::str::FromStr;
 
 use maulstick_appearance::ground::{add_spectrum, check_ground};
-use maulstick_canvas::EditError;
 use maulstick_canvas::assets::SPECTRUM;
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
@@ -11,6 +10,7 @@ use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{MaterialName, SpectrumText, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// What a ground is made of.
@@ -93,8 +93,9 @@ impl Form for Ground {
 
 impl PaintingEdit for Ground {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let on = painting.surfaces.at(self.surface)?;
-        let assets = &mut painting.optics.assets;
+        let bench = &mut painting.bench;
+        let on = bench.desk.surfaces.at(self.surface)?;
+        let assets = &mut bench.desk.optics.assets;
         let ground = match &self.ground {
             GroundSource::Named { name } => name.to_string(),
             GroundSource::Spectrum { csv } => {
@@ -102,7 +103,7 @@ impl PaintingEdit for Ground {
             }
         };
         check_ground(&ground, assets)?;
-        painting.change_material(StepName::Ground, on, |material| material.ground = ground);
+        bench.change_material(StepName::Ground, on, |material| material.ground = ground);
         Ok(Applied::Done)
     }
 

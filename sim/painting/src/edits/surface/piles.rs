@@ -1,6 +1,5 @@
 //! Lets paint on a surface deplete or last.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::nearest::choice;
 use maulstick_types::scene::PALETTE;
@@ -8,6 +7,7 @@ use maulstick_types::values::ValueError;
 use serde::de::{Deserialize, Deserializer};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Let paint on the palette deplete or last
@@ -71,7 +71,9 @@ impl Form for Piles {
 
 impl PaintingEdit for Piles {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.change_surface(self.surface, |own| own.piles_last = self.last)
+        let desk = &mut painting.bench.desk;
+        desk.change_surface(self.surface, |own| own.piles_last = self.last)?;
+        Ok(Applied::Done)
     }
 
     fn log_words(&self) -> String {

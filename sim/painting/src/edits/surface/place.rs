@@ -1,12 +1,12 @@
 //! Moves, turns or zooms a surface.
 
-use maulstick_canvas::EditError;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{ValueError, Zoom, check_reach};
 use maulstick_types::{EditFields, Pose};
 use serde::de::{Deserialize, Deserializer, Error};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Move, turn or zoom a surface
@@ -60,9 +60,11 @@ impl PaintingEdit for Place {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let zoom = self.zoom.get();
         Place::new(self.surface, self.pose.clone(), zoom)?;
-        painting.change_surface(self.surface, |own| {
+        let desk = &mut painting.bench.desk;
+        desk.change_surface(self.surface, |own| {
             (own.pose, own.zoom) = (self.pose.clone(), zoom);
-        })
+        })?;
+        Ok(Applied::Done)
     }
 
     fn log_words(&self) -> String {

@@ -1,12 +1,12 @@
 //! Changes the light, or how it becomes colour.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::scene::{Light, LightError};
 use maulstick_types::values::ValueError;
 use serde::de::{Deserialize, Deserializer, Error};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Change the light
@@ -206,9 +206,10 @@ impl PaintingEdit for Relight {
     /// Changes the light. If its spectrum, or its conversion to colour, changes, dry layers are baked anew on demand,
     /// tile by tile.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.relight(&self.light)?;
+        let desk = &mut painting.bench.desk;
+        desk.relight(&self.light)?;
         if self.expose {
-            painting.expose();
+            desk.expose();
         }
         Ok(Applied::Done)
     }

@@ -1,12 +1,12 @@
 //! Scrapes wet paint off a surface.
 
-use maulstick_canvas::EditError;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::PALETTE;
 use maulstick_types::values::ValueError;
 use maulstick_types::{EditFields, Region};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::{EditError, LayerError};
 use crate::painting::Painting;
 
 /// Scrape the wet paint off the palette
@@ -58,17 +58,19 @@ impl Form for Scrape {
 impl PaintingEdit for Scrape {
     /// Wet paint of a part goes to the cleaner, but for that in wells.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.close_windows();
-        let (on, part) = painting.surfaces.part(self.surface, self.region.as_ref())?;
-        let surface = &painting.surfaces[on];
+        let Painting { bench, clock } = painting;
+        bench.close_windows();
+        let surfaces = &bench.desk.surfaces;
+        let (on, part) = surfaces.part(self.surface, self.region.as_ref())?;
+        let surface = &surfaces[on];
         let scraped = surface.scraped(|id| surface.staying(&part, id));
         if scraped.is_empty() {
-            return Err(EditError::NothingWet(self.region.clone()));
+            return Err(LayerError::NothingWet(self.region.clone()).into());
         }
-        painting.clock.stop(Some(self.surface));
-        painting.begin_step(StepName::Scrape, None);
-        painting.put_scraped(on, scraped);
-        painting.end_own_step();
+        clock.stop(Some(self.surface));
+        bench.begin_step(StepName::Scrape, None);
+        bench.put_scraped(on, scraped);
+        bench.end_own_step();
         Ok(Applied::Done)
     }
 

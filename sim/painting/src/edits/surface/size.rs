@@ -1,11 +1,11 @@
 //! Sizes a surface.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{StainThickness, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 
 /// Size the canvas
@@ -46,7 +46,9 @@ impl Form for Size {
 
 impl PaintingEdit for Size {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.change_surface(self.surface, |own| own.stain_m = self.stain.get())
+        let desk = &mut painting.bench.desk;
+        desk.change_surface(self.surface, |own| own.stain_m = self.stain.get())?;
+        Ok(Applied::Done)
     }
 
     fn log_words(&self) -> String {

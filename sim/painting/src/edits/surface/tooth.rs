@@ -1,12 +1,12 @@
 //! Gives a surface another tooth.
 
-use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{MaterialName, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::error::EditError;
 use crate::painting::Painting;
 use crate::setup::relief_called;
 
@@ -56,10 +56,12 @@ impl Form for Tooth {
 
 impl PaintingEdit for Tooth {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let on = painting.surfaces.at(self.surface)?;
-        let cell_m = painting.surfaces[on].cell_m;
-        relief_called(&self.tooth, self.seed, cell_m, &painting.optics.assets)?;
-        painting.change_material(StepName::Tooth, on, |material| {
+        let bench = &mut painting.bench;
+        let desk = &bench.desk;
+        let on = desk.surfaces.at(self.surface)?;
+        let cell_m = desk.surfaces[on].cell_m;
+        relief_called(&self.tooth, self.seed, cell_m, &desk.optics.assets)?;
+        bench.change_material(StepName::Tooth, on, |material| {
             material.tooth = self.tooth.to_string();
             material.tooth_seed = self.seed;
         });

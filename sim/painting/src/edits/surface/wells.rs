@@ -1,14 +1,18 @@
 //! Gives a surface other wells.
 
-use maulstick_canvas::EditError;
+use std::sync::Arc;
+
 use maulstick_types::EditFields;
 use maulstick_types::limits::{FARTHEST_M, WELLS_MAX};
+use maulstick_types::paint::StepName;
 use maulstick_types::scene::{PALETTE, Well, WellKind};
 use maulstick_types::values::ValueError;
 use serde::de::{Deserialize, Deserializer, Error};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
+use crate::error::EditError;
 use crate::painting::Painting;
+use crate::painting::surfaces::WellMoves;
 
 /// Give a surface other wells
 ///
@@ -72,7 +76,38 @@ impl PaintingEdit for Wells {
     /// Gives a surface other wells. Those that move take the wet paint on them along; what lies on those that go, and
     /// where others come, is scraped off.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.set_wells(self.surface, &self.wells)?;
+        let Painting { bench, clock } = painting;
+        let on = bench.desk.surfaces.at(self.surface)?;
+        let changed = bench.desk.with_wells(on, &self.wells)?;
+        let before = &bench.desk.scene.surfaces[on].wells;
+        if changed.wells == *before {
+            return Ok(Applied::Done);
+        }
+        let ways = WellMoves::between((before, &changed.wells), &changed);
+        let relief = Some(Arc::clone(&bench.desk.surfaces[on].bare.relief));
+        let bare = Arc::new(bench.desk.optics.blank(&changed, relief)?);
+        bench.close_windows();
+        let surfaces = &bench.desk.surfaces;
+        let moved = surfaces[on].with_moved_paint(&ways, &surfaces.pager);
+        // A palette that is laid out before anything was painted is nothing to undo.
+        let is_step = !moved.is_empty() || bench.past.history.has_changed_surfaces();
+        if !moved.is_empty() {
+            clock.stop(Some(self.surface));
+        }
+        if is_step {
+            bench.begin_step(StepName::Wells, None);
+        }
+        let desk = &mut bench.desk;
+        desk.scene.surfaces[on] = changed;
+        desk.surfaces[on].bare = bare;
+        desk.scene.version += 1;
+        desk.optics.renew(&desk.scene);
+        if !moved.is_empty() {
+            bench.put_scraped(on, moved);
+        }
+        if is_step {
+            bench.end_own_step();
+        }
         Ok(Applied::Done)
     }
 

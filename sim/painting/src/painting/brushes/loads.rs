@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::Counts;
 use maulstick_model::brush::load::Half;
 use maulstick_optics::THINNER;
@@ -10,10 +9,11 @@ use maulstick_types::scene::{Scene, Surface, WellKind};
 use maulstick_types::{Mixture, mixture::Part};
 
 use super::PaintingBrush;
+use crate::error::BrushError;
 use crate::ledger::Ledger;
-use crate::painting::Painting;
+use crate::painting::backend::deferral::Deferral;
+use crate::painting::desk::Desk;
 use crate::painting::optics::thinner_slot;
-use crate::painting::strokes::deferral::Deferral;
 
 /// What a brush takes up, by the halves of its head: slots and shares.
 type Halves<'a> = [(&'a [(usize, f64)], Half)];
@@ -26,32 +26,35 @@ impl PaintingBrush {
         ledger.to_cleaner(&left);
     }
 
-    /// Fills it from the tubes after it is cleaned; the scene says which slot is the thinner's.
-    fn fill(
-        &mut self,
-        parts: &Halves<'_>,
-        (scene, cell_m): (&Scene, f64),
-        seed: u64,
-        ledger: &mut Ledger,
-    ) {
+    /// Fills it from the tubes after it is cleaned; its deferred steps are settled.
+    pub(crate) fn fill(&mut self, parts: &Halves<'_>, desk: &Desk, seed: u64, ledger: &mut Ledger) {
         self.empty(ledger);
-        let traits = self.traits(cell_m);
+        let traits = self.traits(desk.surfaces.cell_m());
         let load = Arc::make_mut(&mut self.load);
         for (slots, half) in parts {
             load.fill(
                 &self.tidy,
                 &traits,
                 slots,
-                thinner_slot(scene),
+                thinner_slot(&desk.scene),
                 (*half, seed),
             );
         }
         ledger.from_tube(&load.counts());
     }
 
+    /// Gives it the loads that its next strokes take in turn.
+    pub(crate) fn begin_take(&mut self, loads: &[Mixture], cell_m: f64) {
+        self.loads = loads.to_vec();
+        (self.strokes, self.seed) = (0, 0);
+        (self.stroke, self.path) = (None, None);
+        self.head = self.disordered();
+        self.thin_for(cell_m);
+    }
+
     /// Mixture of all paint on it, shares by volume.
-    fn mixture(&self, scene: &Scene) -> Result<Mixture, EditError> {
-        mixture_of(&self.load.counts(), scene).ok_or(EditError::EmptyBrush(self.name.clone()))
+    pub(crate) fn mixture(&self, scene: &Scene) -> Result<Mixture, BrushError> {
+        mixture_of(&self.load.counts(), scene).ok_or(BrushError::Empty(self.name.clone()))
     }
 }
 
@@ -93,41 +96,4 @@ pub(crate) fn mixture_of(counts: &Counts, scene: &Scene) -> Option<Mixture> {
     (total > 0).then(|| Mixture {
         parts: parts.collect(),
     })
-}
-
-impl Painting {
-    /// Fills a brush from the tubes, once its deferred steps are settled.
-    pub(crate) fn fill(&mut self, brush: usize, parts: &Halves<'_>, seed: u64) {
-        self.settle();
-        let from = (&self.scene, self.surfaces.cell_m());
-        self.brushes[brush].fill(parts, from, seed, &mut self.accounts.ledger);
-    }
-
-    /// Mixture of all paint on a brush, shares by volume.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown brush, or one that carries nothing.
-    pub(crate) fn carried_mixture(&mut self, brush: &str) -> Result<Mixture, EditError> {
-        self.commit();
-        let brush = self.brushes.at(brush)?;
-        self.brushes[brush].mixture(&self.scene)
-    }
-
-    /// Gives a brush the loads that its next strokes take in turn.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown brush or paint, or one paint more than there are slots.
-    pub fn take(&mut self, brush: &str, loads: &[Mixture]) -> Result<(), EditError> {
-        let brush = self.brushes.at(brush)?;
-        self.optics.all_slots(&mut self.scene, loads)?;
-        self.close_windows();
-        let cell_m = self.surfaces.cell_m();
-        let brush = &mut self.brushes[brush];
-        brush.loads = loads.to_vec();
-        (brush.strokes, brush.seed) = (0, 0);
-        (brush.stroke, brush.path) = (None, None);
-        brush.head = brush.disordered();
-        brush.thin_for(cell_m);
-        Ok(())
-    }
 }

@@ -9,7 +9,6 @@ use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
 use maulstick_brush::{BrushFile, Head};
-use maulstick_canvas::EditError;
 use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::window::Window;
 use maulstick_model::brush::load::BrushLoad;
@@ -17,8 +16,9 @@ use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 use maulstick_model::path::PathStepper;
 use maulstick_types::{Mixture, name_hash};
 
-use super::strokes::deferral::Deferral;
+use super::backend::deferral::Deferral;
 use crate::brush_colour::Carried;
+use crate::error::BrushError;
 use handling::UnderBrush;
 
 /// Bits of a seed.
@@ -130,9 +130,10 @@ impl PaintingBrush {
             return;
         }
         let head = Arc::new(Head::of(&thinned));
-        let finer = match head.strips() > self.tidy.strips() {
-            true => &head,
-            false => &self.tidy,
+        let finer = if head.strips() > self.tidy.strips() {
+            &head
+        } else {
+            &self.tidy
         };
         self.load = Arc::new(self.load.onto(head.strips(), finer));
         (self.kept, self.thinned, self.tidy) = (None, thinned, head);
@@ -194,8 +195,8 @@ impl Brushes {
     }
 
     /// Index of a brush; it holds until another brush is defined.
-    pub(crate) fn at(&self, name: &str) -> Result<usize, EditError> {
-        self.place(name).map_err(|_| EditError::NoBrush {
+    pub(crate) fn at(&self, name: &str) -> Result<usize, BrushError> {
+        self.place(name).map_err(|_| BrushError::Unknown {
             name: name.to_owned(),
             known: self.iter().map(|brush| brush.name.clone()).collect(),
         })

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use maulstick_brush::{BrushFile, Head};
-use maulstick_canvas::EditError;
 use maulstick_canvas::page::Page;
 use maulstick_model::brush::head::Waypoint;
 use maulstick_model::brush::load::BrushLoad;
@@ -12,6 +11,7 @@ use maulstick_model::brush::traits::TEXELS_PER_STRIP;
 use maulstick_model::path::PathStepper;
 
 use super::{Brushes, PaintingBrush};
+use crate::error::EditError;
 use crate::painting::surfaces::Surfaces;
 use crate::snapshot::BrushSnapshot;
 

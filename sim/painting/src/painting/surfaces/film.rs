@@ -3,18 +3,13 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::dry::DryStack;
 use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
-use maulstick_canvas::quantum::{CELL_MAX, Counts, QUANTUM_M, SLOTS};
+use maulstick_canvas::quantum::{CELL_MAX, Counts, SLOTS};
 use maulstick_canvas::tile::{Tile, TileId};
-use maulstick_types::Mixture;
-use maulstick_types::paint::StepName;
 
 use super::SurfaceState;
-use crate::ledger::Ledger;
-use crate::painting::Painting;
 
 /// Wet paint of a tile with more applied to it.
 #[derive(Clone)]
@@ -24,6 +19,15 @@ struct Laid {
     given: Counts,
     /// Most quanta of a cell.
     top: f32,
+}
+
+/// A tile with more wet paint.
+pub(crate) struct FilmTile {
+    pub(crate) tile: Tile,
+    /// Paint that was applied.
+    pub(crate) given: Counts,
+    /// Most quanta of a cell, with what has dried beneath.
+    pub(crate) top: f32,
 }
 
 /// Results of an even film on tiles that were alike: they share their pages, so that a vast canvas takes no more room
@@ -44,75 +48,42 @@ impl Films {
     }
 }
 
-impl Painting {
-    /// Lays an even film of wet paint over a whole surface, but for its wells; from where `book` says.
-    pub(crate) fn lay_from(
-        &mut self,
-        surface: u32,
-        mixture: &Mixture,
-        thickness_m: f64,
-        book: fn(&mut Ledger, &Counts),
-    ) -> Result<(), EditError> {
-        let on = self.surfaces.at(surface)?;
-        let slots = self.optics.slots(&mut self.scene, mixture)?;
-        let mut quanta = [0.0f32; SLOTS];
-        for (slot, share) in slots {
-            quanta[slot] += (share * thickness_m / QUANTUM_M).round() as f32;
-        }
-        self.begin_step(StepName::Fill, None);
-        let [across, up] = self.surfaces[on].store.grid();
-        let mut films = Films::default();
-        for y in 0..up {
-            for x in 0..across {
-                let place = (on, TileId { x, y });
-                self.lay_on(place, |_, slot| quanta[slot], Some(&mut films), book);
-            }
-        }
-        self.end_own_step();
-        Ok(())
-    }
-
-    /// Adds wet paint to a tile of a surface, `quanta` by cell and slot: as much as the cells still hold. Cells
-    /// beyond the surface's edge and in wells get none. With `films` it is as much on every cell.
-    pub(crate) fn lay_on(
-        &mut self,
-        (on, id): (usize, TileId),
+impl SurfaceState {
+    /// A tile with more wet paint, `quanta` by cell and slot: as much as the cells still hold; `None` if that is none.
+    /// Cells beyond the surface's edge and in wells get none. With `films` it is as much on every cell.
+    pub(crate) fn with_film(
+        &self,
+        id: TileId,
         quanta: impl Fn(usize, usize) -> f32,
         films: Option<&mut Films>,
-        book: fn(&mut Ledger, &Counts),
-    ) {
-        let surface = &self.surfaces[on];
-        let before = surface.store.version(id).tile.clone();
-        let (room, is_whole) = surface.room(id);
+        pager: &Arc<Pager>,
+    ) -> Option<FilmTile> {
+        let before = self.store.version(id).tile.as_deref();
+        let (room, is_whole) = self.room(id);
         let mut alone = Films::default();
         let films = match films {
             Some(films) if is_whole => films,
             _ => &mut alone,
         };
-        let wet = before.as_deref().and_then(Tile::wet_page);
+        let wet = before.and_then(Tile::wet_page);
         let key = wet.map_or(0, Page::id);
         let laid = match films.laid.get(&key) {
             Some(laid) => laid.clone(),
             None => {
-                let Some(laid) = laid(wet, room, quanta, &self.surfaces.pager) else {
-                    return;
-                };
+                let laid = laid(wet, room, quanta, pager)?;
                 films.laid.insert(key, laid.clone());
                 laid
             }
         };
-        let dry = before.as_deref().and_then(Tile::dry).cloned();
+        let dry = before.and_then(Tile::dry).cloned();
         let beneath = dry.as_ref().map_or(0.0, |stack| films.beneath(stack));
-        let tile = Tile::of_pages(Some(laid.page), dry);
-        self.replace((surface.id, id), Some(Arc::new(tile)));
-        book(&mut self.accounts.ledger, &laid.given);
-        self.book(None);
-        let top = &mut self.surfaces[on].top;
-        *top = top.max(laid.top + beneath);
+        Some(FilmTile {
+            tile: Tile::of_pages(Some(laid.page), dry),
+            given: laid.given,
+            top: laid.top + beneath,
+        })
     }
-}
 
-impl SurfaceState {
     /// Most quanta that each cell of a tile takes, and true if all cells take paint, none of them a well's.
     fn room(&self, id: TileId) -> (Vec<f32>, bool) {
         let mut room = vec![CELL_MAX as f32; TILE_CELLS];

@@ -1,25 +1,18 @@
 //! Surfaces: their tiles, the models of their paint, the grounds under them.
 
-mod converting;
 mod counts_at;
-mod film;
-mod materials;
+pub(crate) mod film;
 mod part;
-pub(crate) mod preparation;
-mod relief_below;
-mod scraping;
-pub(crate) mod underpainting;
 mod well_moves;
-pub(crate) mod wells;
 
-pub(crate) use part::{Changed, Part};
+pub(crate) use part::Changed;
+pub(crate) use well_moves::WellMoves;
 
 use std::collections::{BTreeMap, HashSet};
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
 use maulstick_appearance::blank_surface::BlankSurface;
-use maulstick_canvas::EditError;
 use maulstick_canvas::page::Pager;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::store::{TileRect, TileStore};
@@ -28,6 +21,7 @@ use maulstick_canvas::window::Window;
 use maulstick_types::scene::Scene;
 
 use super::optics::Optics;
+use crate::error::{EditError, SurfaceError};
 use crate::history::{TilePlace, TileRef};
 use maulstick_models::{ModelEntry, model_called};
 
@@ -101,9 +95,9 @@ impl Surfaces {
     }
 
     /// Index of a surface.
-    pub(crate) fn at(&self, id: u32) -> Result<usize, EditError> {
+    pub(crate) fn at(&self, id: u32) -> Result<usize, SurfaceError> {
         let found = self.states.iter().position(|surface| surface.id == id);
-        found.ok_or(EditError::NoSurface(id))
+        found.ok_or(SurfaceError::Unknown(id))
     }
 
     /// A surface by its number.
@@ -147,9 +141,28 @@ impl Surfaces {
         );
     }
 
+    /// Names of their models, by their numbers.
+    pub(crate) fn model_names(&self) -> BTreeMap<u32, &'static str> {
+        self.iter().map(|own| (own.id, own.model.name)).collect()
+    }
+
     /// Most quanta that a cell of each surface ever had.
     pub(crate) fn tops(&self) -> BTreeMap<u32, f32> {
         self.iter().map(|own| (own.id, own.top)).collect()
+    }
+
+    /// Tiles that changed since a version, and the number of all that were ever painted on.
+    pub(crate) fn changed_since(&self, version: u64) -> (Vec<(TilePlace, Version)>, u64) {
+        let (mut changed, mut all) = (Vec::new(), 0);
+        for surface in self.iter() {
+            for (id, own) in surface.store.iter() {
+                all += u64::from(own.number > 0);
+                if own.number > version {
+                    changed.push(((surface.id, id), own.clone()));
+                }
+            }
+        }
+        (changed, all)
     }
 
     /// All tiles where something was painted.

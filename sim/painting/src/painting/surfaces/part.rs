@@ -1,9 +1,9 @@
 //! Parts of surfaces, and what of them is wet or dry.
 
+use crate::error::{EditError, SurfaceError};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_types::Region;
@@ -51,7 +51,7 @@ impl SurfaceState {
         };
         region.check()?;
         let within = region.cells(cells, self.cell_m);
-        let cells = within.ok_or_else(|| EditError::NoCell {
+        let cells = within.ok_or_else(|| SurfaceError::NoCell {
             region: region.clone(),
             surface_mm: cells.map(|cells| f64::from(cells) * self.cell_m * 1e3),
         })?;
@@ -121,6 +121,41 @@ impl SurfaceState {
             Some((id, Arc::new(tile)))
         });
         dried.collect()
+    }
+
+    /// As [`dried`](Self::dried), `most` tiles from the one with number `first` on, and which is next.
+    pub(crate) fn some_dried(
+        &self,
+        part: &Part,
+        (number, share): (u32, f32),
+        most: usize,
+        first: u32,
+    ) -> (Changed, Option<u32>) {
+        let mut dried = Vec::new();
+        let mut seen = 0;
+        for (id, tile) in self.wet_tiles_from(first) {
+            let Some(stays) = self.staying(part, id) else {
+                continue;
+            };
+            if seen == most {
+                return (dried, Some(id.y * self.store.grid()[0] + id.x));
+            }
+            seen += 1;
+            if let Some(tile) = self.dried_tile(tile, (number, share), &stays) {
+                dried.push((id, Arc::new(tile)));
+            }
+        }
+        (dried, None)
+    }
+
+    /// Its tiles without their wet paint, but for that of the cells that `stay` of a tile has (a tile without stays
+    /// whole).
+    pub(crate) fn scraped(&self, stay: impl Fn(TileId) -> Option<Vec<usize>>) -> Changed {
+        let scraped = self.wet_tiles().filter_map(|(id, tile)| {
+            let tile = tile.scraped(&stay(id)?)?;
+            Some((id, tile.into()))
+        });
+        scraped.collect()
     }
 
     /// A tile after the lower share of its wet paint, but for the cells of `stays`, has dried into the layer of this

@@ -1,5 +1,7 @@
 //! Random acts of a painter, and what each does.
 
+use maulstick_types::Edit;
+
 use super::*;
 
 /// Places over a surface that hang together, some far off, in and beside it, high and low.
@@ -82,19 +84,12 @@ pub(super) fn act() -> impl Strategy<Value = Act> {
 }
 
 pub(super) fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act) {
+    let name = |b: &usize| BrushName::new(BRUSHES[*b]).expect("valid");
     match act {
         Act::Paint(b, places) => paint(painting, BRUSHES[*b], 10.0, strokes[*b], places),
         Act::NextStroke(b) => strokes[*b] += 1,
-        Act::Load(b, l) => painting
-            .apply(load(BRUSHES[*b], mixture(MIXTURES[*l])))
-            .map(drop)
-            .expect("known"),
-        Act::Clean(b) => painting
-            .apply(Clean {
-                brush: BrushName::new(BRUSHES[*b]).expect("valid"),
-            })
-            .map(drop)
-            .expect("known"),
+        Act::Load(b, l) => done(painting, load(BRUSHES[*b], mixture(MIXTURES[*l]))),
+        Act::Clean(b) => done(painting, Clean { brush: name(b) }),
         Act::Take(b, loads) => {
             let loads: Vec<Mixture> = loads.iter().map(|l| mixture(MIXTURES[*l])).collect();
             painting.take(BRUSHES[*b], &loads).expect("known");
@@ -112,9 +107,7 @@ pub(super) fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act
                 most_m: [0.0, 4e-5][mode % 2],
                 brush: BRUSHES[*b].to_owned(),
             };
-            painting
-                .apply(Handle::try_from(&handling).expect("in range"))
-                .expect("known");
+            done(painting, Handle::try_from(&handling).expect("in range"));
         }
         // There may be nothing wet.
         Act::Scrape(surface) => drop(painting.apply(Scrape {
@@ -123,41 +116,12 @@ pub(super) fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act
         })),
         // It may carry nothing.
         Act::FillWith(b) => drop(painting.apply(Fill {
-            paint: FillPaint::Carried {
-                brush: BrushName::new(BRUSHES[*b]).expect("valid"),
-            },
+            paint: FillPaint::Carried { brush: name(b) },
             thickness: FilmThickness::new(2e-5).expect("in range"),
             surface: CANVAS,
         })),
-        Act::Prepare(surface, last) => {
-            painting
-                .apply(Piles {
-                    last: *last,
-                    surface: *surface,
-                })
-                .expect("a surface");
-            let stain_m = if *last { 0.0 } else { 1e-5 };
-            painting
-                .apply(Size {
-                    stain: StainThickness::new(stain_m).expect("in range"),
-                    surface: *surface,
-                })
-                .expect("a surface");
-        }
-        Act::Wells(0) => {
-            let palette = painting.scene().surfaces[1].clone();
-            let wells = mirrored(&palette.wells, size_m(&palette));
-            lay(painting, wells);
-        }
-        // The first ones, so that others move or go.
-        Act::Wells(count) => {
-            let palette = painting.scene().surfaces[1].clone();
-            let mixtures: Vec<Mixture> = MIXTURES[3 - count..]
-                .iter()
-                .map(|text| mixture(text))
-                .collect();
-            lay(painting, wells_of(&mixtures, palette.cells, palette.cell_m));
-        }
+        Act::Prepare(surface, last) => prepare(painting, *surface, *last),
+        Act::Wells(count) => move_wells(painting, *count),
         // It may have that model.
         Act::Convert(surface, model) => drop(painting.apply(Convert {
             model: ModelName::new(["impasto", "dab", "marker"][*model]).expect("valid"),
@@ -169,7 +133,29 @@ pub(super) fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act
     }
 }
 
-fn lay(painting: &mut Painting, wells: Vec<Well>) {
-    let edit = Wells::new(PALETTE, wells).expect("valid");
-    painting.apply(edit).map(drop).expect("they fit");
+fn done(painting: &mut Painting, edit: impl Into<Edit>) {
+    painting
+        .apply(edit)
+        .map(drop)
+        .expect("nothing is in its way");
+}
+
+fn prepare(painting: &mut Painting, surface: u32, last: bool) {
+    done(painting, Piles { last, surface });
+    let stain_m = if last { 0.0 } else { 1e-5 };
+    let stain = StainThickness::new(stain_m).expect("in range");
+    done(painting, Size { stain, surface });
+}
+
+/// Mirrors the wells, or leaves so many of the first ones, so that others move or go.
+fn move_wells(painting: &mut Painting, count: usize) {
+    let palette = painting.scene().surfaces[1].clone();
+    let wells = if count == 0 {
+        mirrored(&palette.wells, size_m(&palette))
+    } else {
+        let mixtures = MIXTURES[3 - count..].iter().map(|text| mixture(text));
+        let mixtures: Vec<Mixture> = mixtures.collect();
+        wells_of(&mixtures, palette.cells, palette.cell_m)
+    };
+    done(painting, Wells::new(PALETTE, wells).expect("valid"));
 }

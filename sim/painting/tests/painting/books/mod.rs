@@ -14,7 +14,7 @@ use maulstick_painting::setup::wells_of;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::Mixture;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
-use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE, Well};
+use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE};
 use maulstick_types::values::{
     BrushName, FilmThickness, LayerName, ModelName, OpacityFactor, Share, StainThickness,
 };

@@ -7,11 +7,10 @@ use std::collections::BTreeSet;
 use maulstick_appearance::Bakery;
 use maulstick_appearance::bands::Banded;
 use maulstick_brush::BrushFile;
-use maulstick_canvas::EditError;
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::quantum::{Counts, SLOTS};
 use maulstick_painting::edits::{Dry, NameLayer, Opacity, Redo, StopDrying, Undo, Wet};
-use maulstick_painting::{PaintingSetup, Sequencer};
+use maulstick_painting::{LayerError, PaintingSetup, Sequencer};
 use maulstick_types::Edit;
 use maulstick_types::Region;
 use maulstick_types::command::advice::Advice;
@@ -241,10 +240,10 @@ fn a_drying_ends_when_it_is_told_to_and_there_is_one_at_a_time() {
     let mut sequencer = painted();
     let stop = StopDrying { surface: CANVAS };
     let none = sequencer.edit(stop.clone()).expect_err("none goes on");
-    assert!(none == EditError::NotDrying);
+    assert!(none == LayerError::NotDrying.into());
     sequencer.edit(dry_over(600)).expect("wet");
     let other = sequencer.edit(dry_over(60)).expect_err("one goes on");
-    assert!(other == EditError::Drying);
+    assert!(other == LayerError::Drying.into());
     ticks(&mut sequencer, 200);
     let before = counts(&mut sequencer);
     assert!(sum(&before[0]) > 0 && sum(&before[1]) > 0);
@@ -253,11 +252,11 @@ fn a_drying_ends_when_it_is_told_to_and_there_is_one_at_a_time() {
     assert_eq!(counts(&mut sequencer), before);
     let mut empty = self::sequencer();
     let refused = empty.edit(dry_over(60)).expect_err("bare");
-    assert!(refused.to_string().contains("nothing is wet"));
+    assert!(refused == LayerError::NothingWet(None).into());
 }
 
-#[test]
-fn the_newest_layer_becomes_wet_in_a_region_and_an_opacity_is_not_lost() {
+/// Two layers, `low` and `high`, and the counts of the lower one.
+fn layered() -> (Sequencer, Counts) {
     let mut sequencer = painted();
     let all = both(counts(&mut sequencer));
     let dry = |name: &str| dry(1.0, name, None);
@@ -265,6 +264,12 @@ fn the_newest_layer_becomes_wet_in_a_region_and_an_opacity_is_not_lost() {
     sequencer.edit(load("Pyrrole Red")).expect("loaded");
     stroke(&mut sequencer, 2, 3, 11.0, true);
     sequencer.edit(dry("high")).expect("wet");
+    (sequencer, all)
+}
+
+#[test]
+fn an_opacity_is_not_lost_and_layers_are_named() {
+    let (mut sequencer, _) = layered();
     let opacity = |layer: &str, opacity: f32| Opacity {
         layer: layer.parse().expect("valid"),
         opacity: OpacityFactor::new(opacity).expect("in range"),
@@ -298,7 +303,11 @@ fn the_newest_layer_becomes_wet_in_a_region_and_an_opacity_is_not_lost() {
     assert_eq!(names(&sequencer), ["low", "high"]);
     let unknown = sequencer.edit(name(3)).expect_err("no layer");
     assert!(unknown.to_string().contains('3') && unknown.advice().to_string().contains("2 (high)"));
+}
 
+#[test]
+fn the_newest_layer_becomes_wet_in_a_region() {
+    let (mut sequencer, all) = layered();
     let region: Region = "6,6,10x10".parse().expect("a region");
     assert_eq!(
         sequencer
@@ -321,7 +330,7 @@ fn the_newest_layer_becomes_wet_in_a_region_and_an_opacity_is_not_lost() {
     sequencer.edit(wet(0, None)).expect("all");
     assert_eq!((layers(&sequencer).len(), depth(&sequencer)), (0, 0));
     let nothing = sequencer.edit(wet(0, None)).expect_err("all is wet");
-    assert!(nothing.to_string().contains("nothing has dried"));
+    assert!(nothing == LayerError::NothingDry(None).into());
     for _ in 0..2 {
         sequencer.edit(Undo { brush: None }).expect("done");
     }

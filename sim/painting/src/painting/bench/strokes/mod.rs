@@ -1,0 +1,94 @@
+//! Strokes: states of a brush become steps of the paint model on windows of tiles.
+
+mod cells;
+mod relaxing;
+mod step;
+mod stroke;
+mod tiles;
+mod timing;
+mod wells;
+
+use crate::error::{BrushError, EditError};
+use maulstick_model::brush::scale::Scale;
+use maulstick_model::path::PathStepper;
+use maulstick_types::brush::{BrushState, Solve, solve_flags};
+
+use super::Workbench;
+use stroke::Stroke;
+
+impl Workbench {
+    /// Paints what a brush did in its epoch: strokes are numbered from 1 in each.
+    ///
+    /// # Errors
+    /// [`EditError`] for an unknown brush, or a state that does not fit its brush file.
+    pub(crate) fn state(
+        &mut self,
+        brush: &str,
+        epoch: u32,
+        state: &BrushState,
+    ) -> Result<(), EditError> {
+        let brush = self.brushes.at(brush)?;
+        let solved = state.solves.iter();
+        let painted = solved.map(|solve| self.solve(brush, epoch, solve));
+        let painted: Result<(), EditError> = painted.collect();
+        self.book(Some(brush));
+        painted
+    }
+
+    fn solve(&mut self, brush: usize, epoch: u32, solve: &Solve) -> Result<(), EditError> {
+        let own = &self.brushes[brush];
+        let fits = solve.stroke == 0 || own.head.fits(solve.angles_rad.len());
+        if !fits || solve.fault().is_some() {
+            return Err(BrushError::Unfit(own.name.clone()).into());
+        }
+        self.accounts.note_time(solve.event_ns);
+        let Ok(surface) = self.desk.surfaces.at(solve.surface) else {
+            return Ok(());
+        };
+        if solve.flags & solve_flags::PREVIEW != 0 {
+            return Ok(());
+        }
+        if solve.stroke == 0 {
+            self.lift(brush);
+            self.backend.stroke_ends();
+            return Ok(());
+        }
+        let stroke = Stroke {
+            scale: Scale {
+                cell_m: self.desk.surfaces[surface].cell_m,
+                zoom: solve.zoom,
+            },
+            bench: self,
+            brush,
+            surface,
+        };
+        stroke.follow(epoch, solve)
+    }
+
+    /// Ends a brush's contact: what it left relaxes.
+    fn lift(&mut self, brush: usize) {
+        if let Some((mut stroke, path)) = self.take_path(brush) {
+            stroke.finish(path);
+            stroke.relax();
+        }
+    }
+
+    /// Steps the rest of a brush's path, if it is in contact.
+    fn end_path(&mut self, brush: usize) {
+        if let Some((mut stroke, path)) = self.take_path(brush) {
+            stroke.finish(path);
+        }
+    }
+
+    /// The stroke of a brush in contact, and its path.
+    fn take_path(&mut self, brush: usize) -> Option<(Stroke<'_>, PathStepper)> {
+        let (surface, path) = self.brushes[brush].path.take()?;
+        let stroke = Stroke {
+            bench: self,
+            brush,
+            surface,
+            scale: path.scale(),
+        };
+        Some((stroke, path))
+    }
+}
