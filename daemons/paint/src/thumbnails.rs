@@ -4,13 +4,13 @@
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
-use maulstick_bus::typed::Reader;
+use maulstick_bus::typed::{Reader, answer};
 use maulstick_bus::{Bus, BusError, Request, Server, Wake};
 use maulstick_exchange::{HistoryPictures, small_picture};
 use maulstick_painting::Painting;
+use maulstick_types::Origin;
 use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
 use maulstick_types::scene::{CANVAS, Light};
-use maulstick_types::{Flags, Origin, encode};
 
 /// Pixels of the longer side.
 const SIDES: std::ops::RangeInclusive<u32> = 1..=512;
@@ -158,7 +158,7 @@ impl Thumbnails {
                     }
                 },
             };
-            self.answer(bus, request, &reply);
+            answer(request, &self.me, bus.now_ns(), &reply);
         }
     }
 
@@ -203,7 +203,7 @@ impl Thumbnails {
             .partition(|(_, asked)| of_it(asked));
         self.waiting = waiting;
         for (request, _) in answered {
-            self.answer(bus, request, reply);
+            answer(request, &self.me, bus.now_ns(), reply);
         }
     }
 
@@ -251,18 +251,6 @@ impl Thumbnails {
         {
             Ok(_) => self.drawing = Some((shows, drawn)),
             Err(error) => tracing::error!("no small pictures are drawn: {error}"),
-        }
-    }
-
-    fn answer(&self, bus: &dyn Bus, request: Request, reply: &ThumbnailReply) {
-        let now_ns = bus.now_ns();
-        match encode(&self.me, Flags::NONE, 0, now_ns, now_ns, reply) {
-            Ok(bytes) => {
-                if let Err(error) = request.answer(bytes) {
-                    tracing::debug!("a view is gone: {error}");
-                }
-            }
-            Err(error) => tracing::error!("a small picture cannot be sent: {error}"),
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Requests about the force of a device: carried out, answered, and logged with the name of who asked.
 
-use maulstick_bus::typed::Reader;
+use maulstick_bus::typed::{Reader, answer};
 use maulstick_bus::{Request, Server};
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
-use maulstick_types::{Flags, Origin, encode, plain};
+use maulstick_types::{Origin, plain};
 
 use super::Daemon;
 use super::force_settings::share_of;
@@ -116,7 +116,7 @@ impl Daemon {
                 },
                 guidance: control.guidance,
             };
-            answer(request, self.output.origin(), now_ns, &reply);
+            answer(request, &self.output.origin(), now_ns, &reply);
         }
         if let Some(said) = self.orders.log.due(now_ns) {
             log(self.connection.name(), &said);
@@ -145,17 +145,6 @@ impl Daemon {
         } else {
             Obeyed::Unchanged
         }
-    }
-}
-
-fn answer(request: Request, me: Origin, now_ns: u64, reply: &ForceReply) {
-    match encode(&me, Flags::NONE, 0, now_ns, now_ns, reply) {
-        Ok(bytes) => {
-            if let Err(error) = request.answer(bytes) {
-                tracing::debug!("a client is gone: {error}");
-            }
-        }
-        Err(error) => tracing::error!("an order cannot be answered: {error}"),
     }
 }
 
