@@ -8,6 +8,7 @@ use maulstick_bus::typed::{Reader, answer};
 use maulstick_bus::{Bus, BusError, Request, Server, Wake};
 use maulstick_exchange::{HistoryPictures, small_picture};
 use maulstick_painting::Painting;
+use maulstick_rig::thread::try_start;
 use maulstick_types::Origin;
 use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
 use maulstick_types::scene::{CANVAS, Light};
@@ -226,12 +227,11 @@ impl Thumbnails {
                 return;
             }
             let side = side as usize;
-            let picture = match is_step {
-                true => {
-                    let mut of_steps = of_steps.lock().unwrap_or_else(PoisonError::into_inner);
-                    of_steps.draw(&mut still, CANVAS, side)
-                }
-                false => small_picture(&mut still, CANVAS, side),
+            let picture = if is_step {
+                let mut of_steps = of_steps.lock().unwrap_or_else(PoisonError::into_inner);
+                of_steps.draw(&mut still, CANVAS, side)
+            } else {
+                small_picture(&mut still, CANVAS, side)
             };
             let Some(picture) = picture else {
                 return;
@@ -245,12 +245,6 @@ impl Thumbnails {
             to_node.send(reply).ok();
             wake.ring();
         };
-        match std::thread::Builder::new()
-            .name("thumbnail".into())
-            .spawn(work)
-        {
-            Ok(_) => self.drawing = Some((shows, drawn)),
-            Err(error) => tracing::error!("no small pictures are drawn: {error}"),
-        }
+        self.drawing = try_start("thumbnail", work).map(|_| (shows, drawn));
     }
 }
