@@ -35,7 +35,7 @@ pub struct Added {
     pub driver: String,
     /// The file in which it is kept.
     pub file: PathBuf,
-    /// What the driver lacks, and the name that the device reports.
+    /// Name that the device reports, and the missing requirement of its driver.
     pub missing: Option<(String, String)>,
     /// The rig's answer; `None` if it does not run.
     pub started: Option<Detail>,

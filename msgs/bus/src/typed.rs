@@ -48,7 +48,7 @@ pub struct Sender<M> {
     topic: String,
     origin: Origin,
     next: u64,
-    /// True once it was said that a message was too long.
+    /// True once a message that was too long was logged.
     told: bool,
     message: PhantomData<fn(M)>,
 }

@@ -9,7 +9,7 @@ const EDITS: &str = include_str!("journal_12.txt");
 /// Bytes of an entry of each kind, version 11. No line is ever changed.
 const WORDED: &str = include_str!("worded.txt");
 
-/// What the lines say.
+/// Entries of the lines.
 fn entries() -> [Entry; 6] {
     let brush = || "main".to_owned();
     let undo = Edit::named("undo", &serde_json::json!({ "brush": null }));

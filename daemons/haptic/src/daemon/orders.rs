@@ -52,7 +52,7 @@ struct OrderLog {
 }
 
 impl OrderLog {
-    /// What is to be said of a request that has changed something: of many shares in a row the first, one a second, and
+    /// Line of the log for a request that has changed something: of many shares in a row the first, one a second, and
     /// the last one.
     fn note(&mut self, request: ForceRequest, now_ns: u64) -> Option<ForceRequest> {
         let is_share = matches!(
@@ -77,9 +77,10 @@ impl OrderLog {
     /// A share that has waited for its line.
     fn due(&mut self, now_ns: u64) -> Option<ForceRequest> {
         let (said_ns, _) = self.shared.as_ref()?;
-        match now_ns >= said_ns + SHARES_PERIOD_NS {
-            true => self.unsaid.take(),
-            false => None,
+        if now_ns >= said_ns + SHARES_PERIOD_NS {
+            self.unsaid.take()
+        } else {
+            None
         }
     }
 }

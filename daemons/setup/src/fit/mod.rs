@@ -35,7 +35,7 @@ pub enum FitEvent {
     Opened {
         /// Its name.
         device: String,
-        /// What its driver found.
+        /// Description by its driver.
         what: String,
     },
     /// A corner is to be touched.
