@@ -234,10 +234,10 @@ mod tests {
     }
 
     /// The edit that a command line means.
-    fn edit_of(arguments: &str) -> Option<Edit> {
-        let words = std::iter::once("maulstick").chain(arguments.split('|'));
+    fn edit_of(arguments: &[&str]) -> Option<Edit> {
+        let words = std::iter::once(&"maulstick").chain(arguments);
         let matches = grouped(program()).try_get_matches_from(words);
-        let matches = matches.unwrap_or_else(|error| panic!("{arguments}: {error}"));
+        let matches = matches.unwrap_or_else(|error| panic!("{arguments:?}: {error}"));
         match Cli::from_arg_matches(&matches).expect("read").command {
             Command::Daily(command) => Some(command.edit),
             Command::Layer(command) => Some(command.edit),
@@ -265,7 +265,7 @@ mod tests {
             match entry.arguments {
                 Some(arguments) => {
                     let example = (entry.example)().expect("in range");
-                    assert_eq!(edit_of(arguments), Some(example), "{arguments}");
+                    assert_eq!(edit_of(arguments), Some(example), "{arguments:?}");
                 }
                 None => without.push(entry.name),
             }

@@ -34,7 +34,7 @@ pub enum Place {
     Surface,
 }
 
-/// How the brush comes to a sample.
+/// Approach of the brush to a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Start {
     /// From the sample before.
@@ -181,9 +181,10 @@ impl PathSimplifier {
             (self.drops, self.dropped) = (true, self.dropped + 1);
             return false;
         }
-        let start = match std::mem::take(&mut self.drops) {
-            true => Start::AfterLoss,
-            false => start,
+        let start = if std::mem::take(&mut self.drops) {
+            Start::AfterLoss
+        } else {
+            start
         };
         let mut added = Kept {
             waiting,
@@ -209,7 +210,7 @@ impl PathSimplifier {
         true
     }
 
-    /// How the brush comes to a sample, and its way on the surface from the one before, m.
+    /// Approach of the brush to a sample, and its way on the surface from the one before, m.
     fn step(&mut self, waiting: &Waiting) -> (Start, f64) {
         let here = points(&waiting.sample, self.head_length_m);
         let this = (waiting.origin, waiting.event_ns, here, waiting.place);
@@ -220,11 +221,12 @@ impl PathSimplifier {
             return (Start::GoesOn, 0.0);
         };
         let touches = place == Place::Surface && waiting.place == Place::Surface;
-        let way_m = match touches {
-            true => (0..2)
+        let way_m = if touches {
+            (0..2)
                 .map(|end| distance(here[end], there[end]))
-                .fold(0.0, f64::max),
-            false => 0.0,
+                .fold(0.0, f64::max)
+        } else {
+            0.0
         };
         let advances = waiting.event_ns > before_ns;
         let time_ns = waiting.event_ns.saturating_sub(before_ns);
@@ -233,9 +235,10 @@ impl PathSimplifier {
             true if self.speed.passes(way_m, time_ns) => Start::GoesOn,
             true => Start::TooFast,
         };
-        match start == Start::GoesOn || !touches {
-            true => (Start::GoesOn, way_m),
-            false => (start, 0.0),
+        if start == Start::GoesOn || !touches {
+            (Start::GoesOn, way_m)
+        } else {
+            (start, 0.0)
         }
     }
 
@@ -303,9 +306,10 @@ impl PathSimplifier {
     /// Takes the oldest one.
     pub fn pop(&mut self) -> Option<(Start, Waiting)> {
         let oldest = self.kept.pop_front()?;
-        self.way_m = match self.kept.is_empty() {
-            true => 0.0,
-            false => self.way_m - oldest.way_m,
+        self.way_m = if self.kept.is_empty() {
+            0.0
+        } else {
+            self.way_m - oldest.way_m
         };
         Some((oldest.start, oldest.waiting))
     }

@@ -11,6 +11,7 @@ use std::thread::JoinHandle;
 use maulstick_bus::Bus;
 use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
+use maulstick_rig::thread::start;
 use maulstick_types::stylus::{StylusSample, switch};
 use maulstick_types::wire::topics::Topics;
 
@@ -117,12 +118,7 @@ impl Actor {
         let (events, edges) = sync_channel(WAITING);
         let stop = Arc::new(AtomicBool::new(false));
         let mut worker = Worker::new(bus, topics, brush, Arc::clone(&stop))?;
-        let thread = std::thread::Builder::new()
-            .name("switches".into())
-            .spawn(move || worker.run(&edges))
-            .map_err(|error| {
-                UserError::failure(format!("cannot start the thread for the switches: {error}"))
-            })?;
+        let thread = start("switches", move || worker.run(&edges))?;
         Ok(Self {
             actions,
             told: 0,

@@ -16,6 +16,7 @@ use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, Qos, Queue, Wake};
 use maulstick_num::exp;
 use maulstick_rig::UserError;
+use maulstick_rig::thread::start;
 use maulstick_types::Edit;
 use maulstick_types::control::ControlSample;
 use maulstick_types::scene::{CANVAS, Scene};
@@ -84,18 +85,10 @@ impl CanvasMover {
                 |command| commander.send(command, None, PATIENCE, &stopped).map(drop),
             );
         };
-        let thread = std::thread::Builder::new()
-            .name("mover".into())
-            .spawn(run)
-            .map_err(|error| {
-                UserError::failure(format!(
-                    "cannot start the thread for the free hand: {error}"
-                ))
-            })?;
         Ok(Self {
             controls: Some(controls),
             stop,
-            thread: Some(thread),
+            thread: Some(start("mover", run)?),
         })
     }
 

@@ -10,7 +10,7 @@ use maulstick_types::stylus::StylusStatus;
 use crate::senders::{Means, Senders, Verdict};
 use crate::servo::channels::Delivery;
 
-/// What a message means to the servo, or why it is refused.
+/// Meaning of a message to the servo, or its refusal.
 type Reads<M, T> = Box<dyn Fn(&M) -> Result<T, &'static str>>;
 
 /// The way in of the messages of a topic.

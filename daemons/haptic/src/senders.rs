@@ -17,7 +17,7 @@ const CONSENT_NS: u64 = 3_000_000_000;
 /// Most consents at a time.
 const MOST_CONSENTS: usize = 8;
 
-/// What a message moves the hand with.
+/// Kind of message that moves the hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Means {
     /// A contact model.
@@ -108,9 +108,10 @@ impl Senders {
             return Consent::Refused;
         }
         self.consents.push((origin, now_ns + CONSENT_NS));
-        match had_it {
-            true => Consent::Renewed,
-            false => Consent::Given,
+        if had_it {
+            Consent::Renewed
+        } else {
+            Consent::Given
         }
     }
 
@@ -141,9 +142,10 @@ impl Senders {
             None => Verdict::SetAside,
             Some(own) if own.origin == origin => {
                 own.heard_ns = now_ns;
-                match self.is_driven(means, now_ns) {
-                    true => Verdict::SetAside,
-                    false => Verdict::Followed,
+                if self.is_driven(means, now_ns) {
+                    Verdict::SetAside
+                } else {
+                    Verdict::Followed
                 }
             }
             Some(own) if own.is_silent(GAP_NS, now_ns) => Verdict::SetAside,

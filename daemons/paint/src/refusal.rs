@@ -9,7 +9,7 @@ use maulstick_types::command::advice::Advice;
 pub struct Refusal {
     /// The error.
     pub what: String,
-    /// What to do about it.
+    /// Advice.
     pub advice: Advice,
 }
 

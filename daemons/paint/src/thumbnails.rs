@@ -4,13 +4,14 @@
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
-use maulstick_bus::typed::Reader;
+use maulstick_bus::typed::{Reader, answer};
 use maulstick_bus::{Bus, BusError, Request, Server, Wake};
 use maulstick_exchange::{HistoryPictures, small_picture};
 use maulstick_painting::Painting;
+use maulstick_rig::thread::try_start;
+use maulstick_types::Origin;
 use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
 use maulstick_types::scene::{CANVAS, Light};
-use maulstick_types::{Flags, Origin, encode};
 
 /// Pixels of the longer side.
 const SIDES: std::ops::RangeInclusive<u32> = 1..=512;
@@ -158,7 +159,7 @@ impl Thumbnails {
                     }
                 },
             };
-            self.answer(bus, request, &reply);
+            answer(request, &self.me, bus.now_ns(), &reply);
         }
     }
 
@@ -203,7 +204,7 @@ impl Thumbnails {
             .partition(|(_, asked)| of_it(asked));
         self.waiting = waiting;
         for (request, _) in answered {
-            self.answer(bus, request, reply);
+            answer(request, &self.me, bus.now_ns(), reply);
         }
     }
 
@@ -226,12 +227,11 @@ impl Thumbnails {
                 return;
             }
             let side = side as usize;
-            let picture = match is_step {
-                true => {
-                    let mut of_steps = of_steps.lock().unwrap_or_else(PoisonError::into_inner);
-                    of_steps.draw(&mut still, CANVAS, side)
-                }
-                false => small_picture(&mut still, CANVAS, side),
+            let picture = if is_step {
+                let mut of_steps = of_steps.lock().unwrap_or_else(PoisonError::into_inner);
+                of_steps.draw(&mut still, CANVAS, side)
+            } else {
+                small_picture(&mut still, CANVAS, side)
             };
             let Some(picture) = picture else {
                 return;
@@ -245,24 +245,6 @@ impl Thumbnails {
             to_node.send(reply).ok();
             wake.ring();
         };
-        match std::thread::Builder::new()
-            .name("thumbnail".into())
-            .spawn(work)
-        {
-            Ok(_) => self.drawing = Some((shows, drawn)),
-            Err(error) => tracing::error!("no small pictures are drawn: {error}"),
-        }
-    }
-
-    fn answer(&self, bus: &dyn Bus, request: Request, reply: &ThumbnailReply) {
-        let now_ns = bus.now_ns();
-        match encode(&self.me, Flags::NONE, 0, now_ns, now_ns, reply) {
-            Ok(bytes) => {
-                if let Err(error) = request.answer(bytes) {
-                    tracing::debug!("a view is gone: {error}");
-                }
-            }
-            Err(error) => tracing::error!("a small picture cannot be sent: {error}"),
-        }
+        self.drawing = try_start("thumbnail", work).map(|_| (shows, drawn));
     }
 }

@@ -98,7 +98,7 @@ fn begun(model: &str, path: &Path) -> (Document, Painting) {
     (document, painting)
 }
 
-/// What is seen in a file, with the brush where it was left.
+/// Picture of a file, with the brush where it was left.
 fn in_file(path: &Path) -> Seen {
     let (document, opened) = Document::open(&settings(path)).expect("whole");
     let opened = opened.expect("a painting");

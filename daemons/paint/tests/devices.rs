@@ -186,7 +186,7 @@ fn a_hand_feels_the_brush_of_a_take_and_paints_nothing_into_it() {
     assert!(painted == support::offline(), "the hand has painted");
 }
 
-/// What a pressed brush gives to a device that feels it by a law.
+/// Contact model of a pressed brush for a device with a force law.
 fn pressed(kind: ForceKind) -> ForceLaw {
     let net = MemoryNet::new(1, START_NS, Faults::default());
     let mut settings = support::settings();

@@ -1,4 +1,4 @@
-//! What a client or a device sends by mistake or on purpose ends no node.
+//! Hostile and mistaken messages of clients and devices, which end no node.
 
 mod support;
 

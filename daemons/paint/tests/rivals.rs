@@ -15,7 +15,7 @@ use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Message, Origin, encode, name_hash};
 use support::{Device, Live, START_NS, loads, pen};
 
-/// What is wrong with a scene, and how it comes to be so.
+/// Fault of a scene, and its cause.
 type Change = (&'static str, fn(&mut Scene));
 
 /// Two seconds, in turns of 2 ms.
@@ -54,7 +54,7 @@ impl Rig {
         self.live.paint.poll().expect("turned");
     }
 
-    /// Whether a short stroke becomes paint.
+    /// True if a short stroke becomes paint.
     fn paints(&mut self) -> bool {
         let before = self.live.paint.painting_mut().report().steps;
         for _ in 0..20 {

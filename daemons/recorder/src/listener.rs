@@ -3,12 +3,13 @@
 use std::time::{Duration, Instant};
 
 use maulstick_bus::{Qos, Queue, RigFolder, Subscription};
-use maulstick_rig::{NodeArgs, NodeHandle, UserError};
+use maulstick_rig::{NodeArgs, NodeHandle};
 use maulstick_streams::Traffic;
 use maulstick_streams::topic_pattern::matches;
 use maulstick_streams::traffic::Arrived;
 use maulstick_types::Header;
 
+use crate::error::RecorderError;
 use crate::work::has_rig;
 
 /// Topics whose last message is kept for late joiners.
@@ -50,8 +51,8 @@ impl Listener {
     /// Joins a rig as a process of its own, which signals stop.
     ///
     /// # Errors
-    /// A [`UserError`] where no rig of that name runs, or the pattern is none.
-    pub fn open(rig: &str, pattern: &str) -> Result<Self, UserError> {
+    /// A [`RecorderError`] where no rig of that name runs, or the pattern is none.
+    pub fn open(rig: &str, pattern: &str) -> Result<Self, RecorderError> {
         let (folder, _) = RigFolder::join(rig)?;
         let member = NodeHandle::join(&NodeArgs {
             folder: folder.path().to_owned(),
@@ -64,15 +65,12 @@ impl Listener {
     /// Listens as a member of a rig.
     ///
     /// # Errors
-    /// A [`UserError`] where the pattern is none.
-    pub fn over(member: NodeHandle, pattern: &str) -> Result<Self, UserError> {
+    /// A [`RecorderError`] where the pattern is none.
+    pub fn over(member: NodeHandle, pattern: &str) -> Result<Self, RecorderError> {
         let pattern = pattern.trim_start_matches(member.topics.prefix());
         let is_key = !pattern.is_empty() && pattern.split('/').all(|part| !part.is_empty());
         if !is_key || pattern.contains(['?', '#', '$']) {
-            let what = format!("the topic '{pattern}' is malformed");
-            return Err(UserError::usage(what).help(
-                "a topic such as stylus/pen/sample, with * for any one part and ** for any number of them",
-            ));
+            return Err(RecorderError::Pattern(pattern.to_owned()));
         }
         let key = format!("{}{pattern}", member.topics.prefix());
         let live = member
@@ -93,7 +91,7 @@ impl Listener {
         })
     }
 
-    /// The next message; `None` once this program is told to end. Dropped before that, it loses no message.
+    /// The next message; `None` once this program is asked to stop. Dropped before that, it loses no message.
     pub async fn arrival(&mut self) -> Option<ReceivedMessage> {
         loop {
             // However fast they come, other tasks have their turn.
@@ -108,7 +106,7 @@ impl Listener {
         }
     }
 
-    /// The next message until then, or until this program is told to end.
+    /// The next message until then, or until this program is asked to stop.
     pub fn next(&mut self, until: Instant) -> Option<ReceivedMessage> {
         // However fast they come, the time ends.
         while !self.is_over() && Instant::now() < until {
@@ -121,14 +119,14 @@ impl Listener {
         None
     }
 
-    /// What has arrived and was not asked for, for a moment at most: more may come meanwhile.
+    /// Messages that have arrived and were not asked for, for a moment at most: more may come meanwhile.
     pub fn rest(&mut self) -> Vec<ReceivedMessage> {
         let until = Instant::now() + REST;
         let waiting = std::iter::from_fn(|| self.waiting());
         waiting.take_while(|_| Instant::now() < until).collect()
     }
 
-    /// What comes from now on, for a time. What another message has overtaken may come a moment later.
+    /// Traffic from now on, for a time. A message that another has overtaken may come a moment later.
     pub fn traffic(&mut self, time: Duration) -> Traffic {
         let mut traffic = Traffic::since(self.member.bus.now_ns());
         let until = Instant::now() + time;
@@ -186,7 +184,7 @@ impl Listener {
         all.map(|subscription| subscription.counts().dropped).sum()
     }
 
-    /// True if this program was told to end.
+    /// True if this program was asked to stop.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.member.stop.requested()

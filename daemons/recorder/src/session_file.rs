@@ -17,6 +17,8 @@ use maulstick_types::brush::BrushState;
 use maulstick_types::paint::JournalEntry;
 use maulstick_types::{Header, Message};
 
+use crate::error::{RecorderError, is_of_its_place};
+
 /// Name of the attached painting.
 pub const PAINTING: &str = "painting.maul";
 /// Topic of the painting's journal.
@@ -36,7 +38,7 @@ pub struct SessionFile {
     pub recording: Recording,
 }
 
-/// What happens in a session, in the order of time.
+/// Event of a session, in the order of time.
 pub enum Event<'a> {
     /// A record that the painting accepts.
     Accepted(Record),
@@ -53,35 +55,31 @@ impl SessionFile {
     /// Opens a session; `None` if the file is no recording of a painting's journal.
     ///
     /// # Errors
-    /// A [`UserError`] where it cannot be read, or lacks the painting.
-    pub fn open(path: &Path) -> Result<Option<Self>, UserError> {
+    /// A [`RecorderError`] where it cannot be read, or lacks the painting.
+    pub fn open(path: &Path) -> Result<Option<Self>, RecorderError> {
         Self::of(Recording::open(path)?)
     }
 
-    /// As [`Self::open`]; `None` also if the file is no recording at all: a take that is damaged is told of as a take.
+    /// As [`Self::open`]; `None` also if the file is no recording at all: a damaged take is reported as a take.
     ///
     /// # Errors
-    /// A [`UserError`] where it lacks the painting.
-    pub fn find(path: &Path) -> Result<Option<Self>, UserError> {
+    /// A [`RecorderError`] where it lacks the painting.
+    pub fn find(path: &Path) -> Result<Option<Self>, RecorderError> {
         Recording::open(path).map_or(Ok(None), Self::of)
     }
 
     /// The session of a recording; `None` if it has no journal of a painting.
     ///
     /// # Errors
-    /// A [`UserError`] where it lacks the painting.
-    pub fn of(recording: Recording) -> Result<Option<Self>, UserError> {
+    /// A [`RecorderError`] where it lacks the painting.
+    pub fn of(recording: Recording) -> Result<Option<Self>, RecorderError> {
         let path = recording.path();
         let mut topics = recording.topics().values();
         if !topics.any(|topic| topic.name == JOURNAL) {
             return Ok(None);
         }
         if !recording.attachments().contains_key(PAINTING) {
-            return Err(UserError::usage(
-                "the recording lacks the painting as it was at its beginning",
-            )
-            .at(path.display().to_string())
-            .help("record a painting that is in a file, such as `maulstick up sea.maul`"));
+            return Err(RecorderError::NoPainting(path.to_owned()));
         }
         Ok(Some(Self {
             path: path.to_owned(),
@@ -92,18 +90,14 @@ impl SessionFile {
     /// Writes the painting as it was at the beginning to a file that is not there yet.
     ///
     /// # Errors
-    /// A [`UserError`] where it cannot be written.
-    pub fn write_painting(&self, to: &Path) -> Result<(), UserError> {
+    /// A [`RecorderError`] where it cannot be written.
+    pub fn write_painting(&self, to: &Path) -> Result<(), RecorderError> {
         let written = write_whole(to, Kind::Own, |file| {
             self.recording.copy_attachment(PAINTING, file)
         });
         written.map_err(|error| match error.kind() {
-            ErrorKind::InvalidData => {
-                UserError::usage("the painting as it was at its beginning is damaged")
-                    .at(self.path.display().to_string())
-                    .help("nothing can be painted again from this recording")
-            }
-            _ => UserError::writing(to, &error),
+            ErrorKind::InvalidData => RecorderError::PaintingDamaged(self.path.clone()),
+            _ => UserError::writing(to, &error).into(),
         })
     }
 
@@ -119,84 +113,49 @@ impl SessionFile {
         last.saturating_sub(first)
     }
 
-    /// Has `each` see what happened since the place of `session`, where the painting of `sequencer` is, up to so many ns
-    /// after the beginning: the time since then, ns, and the event.
+    /// Gives `each` the events since the place of `session`, where the painting of `sequencer` is, up to `to_ns` after the
+    /// beginning, with the time of each since then, ns.
     ///
     /// # Errors
-    /// A [`UserError`] where the file cannot be read, is damaged, or something is missing in it; that of `each`.
+    /// A [`RecorderError`] where the file cannot be read, is damaged, or lacks something; that of `each`.
     pub fn follow(
         &mut self,
-        mut session: RecordedSession,
+        session: RecordedSession,
         sequencer: &mut Sequencer,
         to_ns: u64,
         each: &mut dyn FnMut(&mut Sequencer, u64, Event<'_>) -> Result<(), UserError>,
-    ) -> Result<(), UserError> {
+    ) -> Result<(), RecorderError> {
         let topics = self.recording.topics().clone();
         let [first_ns, _] = self.recording.times_ns().unwrap_or_default();
-        let place = self.path.display().to_string();
-        let broken = |fault: &SessionFault, at_ns: u64| {
-            let [at_s, end_s] = [0, 1].map(|less| {
-                let tenths = (at_ns / 100_000_000)
-                    .saturating_sub(less * u64::from(at_ns.is_multiple_of(100_000_000)));
-                tenths as f64 * 0.1
-            });
-            if let SessionFault::Before { .. } | SessionFault::Behind { .. } = fault {
-                return UserError::usage(fault.to_string())
-                    .at(&place)
-                    .help("`maulstick snapshot` says at which place of the journal it was made");
-            }
-            UserError::usage(format!("at {at_s:.1} s: {fault}"))
-                .at(&place)
-                .help(format!(
-                    "`maulstick take from {place} --end {end_s:.1} -o TAKE` keeps what is before it"
-                ))
+        let mut reader = SessionReader {
+            file: self.path.clone(),
+            session,
+            sequencer,
+            each,
+            newest_ns: 0,
         };
-        let (mut newest_ns, mut done) = (0, Ok(()));
+        let mut done = Ok(());
         let range = [first_ns, first_ns.saturating_add(to_ns)];
-        let mut take_in = |topic: &Topic, message: &RecordedMessage| -> Result<(), UserError> {
-            let at_ns = message.arrived_ns.saturating_sub(first_ns);
-            let name = topic.name.as_str();
-            if matches(STATES, name) {
-                let (header, state) = typed::<BrushState>(topic, message, &place)?;
-                session.state(header, state);
-            } else if name == JOURNAL {
-                let (header, entry) = typed::<JournalEntry>(topic, message, &place)?;
-                let known = session.entry(&header, entry);
-                known.map_err(|fault| broken(&fault, at_ns))?;
-            } else {
-                let topic = name;
-                return each(sequencer, at_ns, Event::Other { topic, message });
-            }
-            loop {
-                let next = session.next_record();
-                let Some(record) = next.map_err(|fault| broken(&fault, at_ns))? else {
-                    return Ok(());
-                };
-                newest_ns = at_ns;
-                each(sequencer, at_ns, Event::Accepted(record))?;
-            }
-        };
         self.recording.messages(range, &mut |message| {
             if let Some(topic) = topics.get(&message.channel) {
-                done = take_in(topic, &message);
+                let at_ns = message.arrived_ns.saturating_sub(first_ns);
+                done = reader.add(topic, &message, at_ns);
             }
             done.is_ok()
         })?;
         done?;
         // Of a recording that was cut off the last message may be anywhere.
-        match session.end() {
-            Err(fault @ (SessionFault::Before { .. } | SessionFault::Behind { .. })) => {
-                return Err(broken(&fault, newest_ns));
-            }
-            Err(fault) if to_ns == u64::MAX && !self.is_cut_off() => {
-                return Err(broken(&fault, newest_ns));
-            }
-            _ => {}
+        let is_complete = to_ns == u64::MAX && !self.is_cut_off();
+        if let Err(fault) = reader.session.end()
+            && (is_complete || is_of_its_place(&fault))
+        {
+            return Err(reader.broken(fault, reader.newest_ns));
         }
         match self.recording.damage() {
-            Some(damage) if to_ns == u64::MAX && !self.is_cut_off() => {
-                Err(UserError::usage(format!("the recording is damaged: {damage}")).at(place))
-            }
+            Some(damage) if is_complete => Err(RecorderError::Damaged {
+                damage: damage.to_owned(),
+                file: self.path.clone(),
+            }),
             _ => Ok(()),
         }
     }
@@ -207,15 +166,68 @@ impl SessionFile {
     }
 }
 
-/// Header and body of a message, whatever version recorded it.
-fn typed<M: Message>(
-    topic: &Topic,
-    message: &RecordedMessage,
-    place: &str,
-) -> Result<(Header, M), UserError> {
-    topic.read::<M>(message).map_err(|error| {
-        UserError::usage(format!("{}: {error}", topic.name))
-            .at(place)
-            .help("paint it with the version of Maulstick that recorded it: `maulstick recording info` names it")
-    })
+/// A session that is read, message by message.
+struct SessionReader<'a> {
+    file: PathBuf,
+    session: RecordedSession,
+    sequencer: &'a mut Sequencer,
+    each: &'a mut dyn FnMut(&mut Sequencer, u64, Event<'_>) -> Result<(), UserError>,
+    /// Time of the newest record, ns.
+    newest_ns: u64,
+}
+
+impl SessionReader<'_> {
+    /// Adds a message, and gives on the records that are complete with it.
+    fn add(
+        &mut self,
+        topic: &Topic,
+        message: &RecordedMessage,
+        at_ns: u64,
+    ) -> Result<(), RecorderError> {
+        let name = topic.name.as_str();
+        if matches(STATES, name) {
+            let (header, state) = self.typed::<BrushState>(topic, message)?;
+            self.session.state(header, state);
+        } else if name == JOURNAL {
+            let (header, entry) = self.typed::<JournalEntry>(topic, message)?;
+            let known = self.session.entry(&header, entry);
+            known.map_err(|fault| self.broken(fault, at_ns))?;
+        } else {
+            let other = Event::Other {
+                topic: name,
+                message,
+            };
+            return Ok((self.each)(self.sequencer, at_ns, other)?);
+        }
+        loop {
+            let next = self.session.next_record();
+            let Some(record) = next.map_err(|fault| self.broken(fault, at_ns))? else {
+                return Ok(());
+            };
+            self.newest_ns = at_ns;
+            (self.each)(self.sequencer, at_ns, Event::Accepted(record))?;
+        }
+    }
+
+    fn broken(&self, fault: SessionFault, at_ns: u64) -> RecorderError {
+        RecorderError::Session {
+            fault,
+            at_ns,
+            file: self.file.clone(),
+        }
+    }
+
+    /// Header and body of a message, whatever version recorded it.
+    fn typed<M: Message>(
+        &self,
+        topic: &Topic,
+        message: &RecordedMessage,
+    ) -> Result<(Header, M), RecorderError> {
+        let read = topic.read::<M>(message);
+        read.map_err(|error| RecorderError::Unreadable {
+            what: topic.name.clone(),
+            error: error.to_string(),
+            file: Some(self.file.clone()),
+        })
+    }
 }

@@ -6,9 +6,12 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::task::{Context, Poll};
 
 use maulstick_bus::{RigFolder, Wake};
-use maulstick_rig::{NodeHandle, Stop, UserError};
+use maulstick_rig::{NodeHandle, Stop};
 use tokio::runtime::Handle;
 use tokio::sync::oneshot::{Receiver, channel, error::TryRecvError};
+use tokio::task::spawn_blocking;
+
+use crate::error::RecorderError;
 
 /// Request that work stop: the flag, and the wake-up of who looks at it.
 #[derive(Clone, Debug, Default)]
@@ -24,7 +27,7 @@ impl StopRequest {
     }
 
     /// Joins a rig as a guest that this request stops; `kind` is the beginning of its name.
-    pub(crate) fn join(self, rig: &str, kind: &str) -> Result<NodeHandle, UserError> {
+    pub(crate) fn join(self, rig: &str, kind: &str) -> Result<NodeHandle, RecorderError> {
         let (folder, _) = RigFolder::join(rig)?;
         let mut member = NodeHandle::guest(folder.path(), &guest_name(kind))?;
         (member.stop, member.wake) = (self.stop, self.wake);
@@ -39,11 +42,19 @@ fn guest_name(kind: &str) -> String {
     format!("{kind}-{}-{number}", std::process::id())
 }
 
+/// Runs on a thread of the runtime for what waits for a disk.
+pub(crate) async fn blocking<T: Send + 'static>(
+    run: impl FnOnce() -> Result<T, RecorderError> + Send + 'static,
+) -> Result<T, RecorderError> {
+    let ended = spawn_blocking(run).await;
+    ended.unwrap_or(Err(RecorderError::Panicked("the reader")))
+}
+
 /// Work in progress. Dropped, it is asked to stop, and nobody waits for it.
 #[derive(Debug)]
 pub(crate) struct Work {
     request: StopRequest,
-    result: Receiver<Result<(), UserError>>,
+    result: Receiver<Result<(), RecorderError>>,
 }
 
 impl Work {
@@ -51,7 +62,7 @@ impl Work {
     pub(crate) fn begin(
         runtime: &Handle,
         request: StopRequest,
-        work: impl Future<Output = Result<(), UserError>> + Send + 'static,
+        work: impl Future<Output = Result<(), RecorderError>> + Send + 'static,
     ) -> Self {
         let (send, result) = channel();
         runtime.spawn(async move { send.send(work.await).ok() });
@@ -64,22 +75,22 @@ impl Work {
     }
 
     /// Its result, once: `None` while it goes on, and after the result was taken.
-    pub(crate) fn result(&mut self) -> Option<Result<(), UserError>> {
+    pub(crate) fn result(&mut self) -> Option<Result<(), RecorderError>> {
         match self.result.try_recv() {
             Ok(result) => Some(result),
             Err(TryRecvError::Empty) => None,
             Err(TryRecvError::Closed) if self.result.is_terminated() => None,
-            Err(TryRecvError::Closed) => Some(Err(panicked())),
+            Err(TryRecvError::Closed) => Some(Err(RecorderError::Panicked("the task"))),
         }
     }
 }
 
 impl Future for Work {
-    type Output = Result<(), UserError>;
+    type Output = Result<(), RecorderError>;
 
     fn poll(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Self::Output> {
         let result = Pin::new(&mut self.result).poll(context);
-        result.map(|result| result.unwrap_or_else(|_| Err(panicked())))
+        result.map(|result| result.unwrap_or_else(|_| Err(RecorderError::Panicked("the task"))))
     }
 }
 
@@ -87,10 +98,6 @@ impl Drop for Work {
     fn drop(&mut self) {
         self.stop();
     }
-}
-
-fn panicked() -> UserError {
-    UserError::failure("internal error: it panicked")
 }
 
 /// True while the rig of a folder runs.

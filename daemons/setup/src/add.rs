@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use maulstick_rig::UserError;
 use maulstick_rig::config::{DeviceSection, PEN_DRIVERS};
 use maulstick_types::command::Detail;
 use maulstick_types::plain;
 
 use crate::attached::{Attached, Places, events, hid, serial};
-use crate::running::{in_rig, put_in_rig};
+use crate::error::{ChoiceError, SetupError};
+use crate::running::{Devices as _, Running, put_in_both};
 use crate::user_file::UserFile;
 
 /// A device to be added.
@@ -35,7 +35,7 @@ pub struct Added {
     pub driver: String,
     /// The file in which it is kept.
     pub file: PathBuf,
-    /// What the driver lacks, and the name that the device reports.
+    /// Name that the device reports, and the missing requirement of its driver.
     pub missing: Option<(String, String)>,
     /// The rig's answer; `None` if it does not run.
     pub started: Option<Detail>,
@@ -44,9 +44,11 @@ pub struct Added {
 /// Adds a device to those of this user, and to the rig of this name if it runs.
 ///
 /// # Errors
-/// A [`UserError`] where none or several fit, where it is wrong, or where it cannot be kept.
-pub fn add(new: &NewDevice, rig: &str) -> Result<Added, UserError> {
+/// A [`SetupError`] where none or several fit, where it is wrong, where the rig refuses it, or where it cannot be kept; all
+/// is as it was then.
+pub fn add(new: &NewDevice, rig: &str) -> Result<Added, SetupError> {
     let mut file = UserFile::read()?;
+    let mut rig = Running::open(rig)?;
     let mut missing = None;
     let (driver, address) = match &new.driver {
         Some(driver) => (driver.clone(), new.address.clone()),
@@ -64,16 +66,15 @@ pub fn add(new: &NewDevice, rig: &str) -> Result<Added, UserError> {
         Some(name) => name.clone(),
         None => free_name(&driver, &file.devices),
     };
-    file.check_free(&name, &in_rig(rig)?)?;
+    file.check_free(&name, &rig.all()?)?;
     let brush = new.brush.as_deref().unwrap_or("main");
     let device = DeviceSection {
         address,
         priority: new.priority,
         ..DeviceSection::new(&name, &driver, brush)
     };
-    file.put(&device)?;
     Ok(Added {
-        started: put_in_rig(rig, &device)?,
+        started: put_in_both(&mut rig, &mut file, &device)?,
         file: file.path().to_owned(),
         name,
         driver,
@@ -119,35 +120,12 @@ fn chosen<'a>(
     }
 }
 
-/// Reason why no attached device can be chosen.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-enum ChoiceError {
-    #[error("what is attached is yours already")]
-    Yours,
-    #[error("no device is attached that a driver fits")]
-    Nothing,
-    /// Address and name of each.
-    #[error("several devices are attached: {}", .0.join(", "))]
-    Several(Vec<String>),
-}
-
-impl From<ChoiceError> for UserError {
-    fn from(error: ChoiceError) -> Self {
-        Self::usage(error.to_string()).help(match error {
-            ChoiceError::Yours => "`maulstick device use` has it paint",
-            ChoiceError::Nothing => {
-                "`maulstick device list` shows what is; `--driver` names one that shows nowhere, as `openhaptics`, `forcedimension`, `openxr` or `inverse3`"
-            }
-            ChoiceError::Several(_) => "say which: --address",
-        })
-    }
-}
-
 /// A name that no device has.
 fn free_name(driver: &str, known: &[DeviceSection]) -> String {
-    let name = match PEN_DRIVERS.contains(&driver) {
-        true => "tablet",
-        false => driver,
+    let name = if PEN_DRIVERS.contains(&driver) {
+        "tablet"
+    } else {
+        driver
     };
     let is_free = |name: &String| known.iter().all(|device| device.name != *name);
     let numbered = (2..).map(|number| format!("{name}-{number}"));

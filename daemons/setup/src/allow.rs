@@ -3,11 +3,10 @@
 use std::io::{ErrorKind, Write as _};
 use std::process::{Command, Stdio};
 
-use maulstick_rig::UserError;
-use maulstick_rig::user_devices::ALLOW_BY_HAND;
 use nix::unistd::geteuid;
 
 use crate::attached::{Places, hid, rules};
+use crate::error::{RuleError, SetupError};
 
 /// Where udev reads the rule.
 pub const RULE: &str = "/etc/udev/rules.d/70-maulstick.rules";
@@ -18,9 +17,8 @@ const INSTALL: &str = "umask 022 && cat > /etc/udev/rules.d/70-maulstick.rules &
 /// Writes the rule, as root or by `pkexec`, which asks for the password.
 ///
 /// # Errors
-/// A [`UserError`] with the command to type where it cannot be written so.
-pub fn allow() -> Result<(), UserError> {
-    let by_hand = |what: String| UserError::failure(what).at(RULE).help(ALLOW_BY_HAND);
+/// [`SetupError::Rule`].
+pub fn allow() -> Result<(), SetupError> {
     let mut command = if geteuid().is_root() {
         Command::new("sh")
     } else {
@@ -29,8 +27,8 @@ pub fn allow() -> Result<(), UserError> {
         asked
     };
     let failed = |error: std::io::Error| match error.kind() {
-        ErrorKind::NotFound => by_hand("pkexec is not installed".to_owned()),
-        _ => by_hand(error.to_string()),
+        ErrorKind::NotFound => RuleError::NoPkexec,
+        _ => RuleError::Spawn(error.to_string()),
     };
     let mut child = command
         .args(["-c", INSTALL])
@@ -46,7 +44,7 @@ pub fn allow() -> Result<(), UserError> {
     let status = child.wait().map_err(failed)?;
     match (status.code(), written) {
         (Some(0), Some(Ok(()))) => Ok(()),
-        (Some(126 | 127), _) => Err(by_hand("it was not allowed".to_owned())),
-        _ => Err(by_hand("the rule could not be installed".to_owned())),
+        (Some(126 | 127), _) => Err(RuleError::Denied.into()),
+        _ => Err(RuleError::NotInstalled.into()),
     }
 }

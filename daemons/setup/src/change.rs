@@ -1,9 +1,9 @@
 //! Settings of a device, changed while painting: its brush, priority, law of force, pressure curve and switches.
 
-use maulstick_rig::UserError;
 use maulstick_rig::config::{DeviceSection, PEN_PRIORITY};
 
-use crate::running::{in_rig, is_same, put_in_rig};
+use crate::error::SetupError;
+use crate::running::{Devices as _, Running, is_same, put_in_both};
 use crate::user_file::UserFile;
 
 /// A change of a device; what is absent stays as it is.
@@ -41,11 +41,12 @@ pub struct Changed {
 /// Changes a device of this user, and of the rig of this name if it runs.
 ///
 /// # Errors
-/// A [`UserError`] where there is no such device, or the change does not fit.
-pub fn change(change: &DeviceChange, rig: &str) -> Result<Changed, UserError> {
+/// A [`SetupError`] where there is no such device, or the change does not fit; all is as it was then.
+pub fn change(change: &DeviceChange, rig: &str) -> Result<Changed, SetupError> {
     let mut file = UserFile::read()?;
+    let mut rig = Running::open(rig)?;
     let name = &change.device;
-    let in_rig = in_rig(rig)?;
+    let in_rig = rig.all()?;
     let own = file.device(name, &in_rig).cloned();
     let is_own = own.is_ok();
     // A studio's device is one of the rig alone.
@@ -72,10 +73,11 @@ pub fn change(change: &DeviceChange, rig: &str) -> Result<Changed, UserError> {
         relief: change.relief.unwrap_or(device.relief),
         ..device
     };
-    let answer = put_in_rig(rig, &changed)?;
-    if is_own {
-        file.put(&changed)?;
-    }
+    let answer = if is_own {
+        put_in_both(&mut rig, &mut file, &changed)?
+    } else {
+        rig.put(&changed)?
+    };
     Ok(Changed {
         device: changed,
         is_running: answer.is_some(),

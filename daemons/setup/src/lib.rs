@@ -9,6 +9,7 @@
 //! | [`fit`](mod@fit) | fit of a device to the canvas |
 //! | [`user_file`] | the file of a user's devices |
 //! | `running` | devices of a running rig |
+//! | [`error`] | errors, and their words for a user |
 //!
 //! Each change is a function that returns what was done. It blocks, as programs, sockets and hands do: `maulstick
 //! device` calls it as it is, the window on a thread.
@@ -36,6 +37,7 @@ pub mod add;
 pub mod allow;
 pub mod attached;
 pub mod change;
+pub mod error;
 pub mod fit;
 pub mod listing;
 pub mod remove;

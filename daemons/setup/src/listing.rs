@@ -20,7 +20,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// After the first, others come this soon; a status comes each tenth of a second.
 const TOGETHER: Duration = Duration::from_millis(300);
 
-/// What is attached to a machine, and the devices of a rig.
+/// Devices attached to a machine, and those of a rig.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct DeviceListing {
     /// At HID nodes.
@@ -108,7 +108,7 @@ pub struct UnusedDevice {
 }
 
 impl DeviceListing {
-    /// What is attached to this machine, and the devices of the rig of this name.
+    /// Devices attached to this machine, and those of the rig of this name.
     #[must_use]
     pub fn read(rig: &str) -> Self {
         let places = Places::here();

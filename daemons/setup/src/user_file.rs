@@ -9,7 +9,9 @@ use std::path::{Path, PathBuf};
 use maulstick_rig::config::{BrushSection, DeviceSection};
 use maulstick_rig::files::{Kind, write_whole};
 use maulstick_rig::{RigConfig, UserError, user_devices};
-use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value};
+use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, TomlError, Value};
+
+use crate::error::SetupError;
 
 /// The user's devices, read for a change.
 #[derive(Debug)]
@@ -24,22 +26,25 @@ impl UserFile {
     /// Reads it; it need not be there.
     ///
     /// # Errors
-    /// A [`UserError`] where it cannot be read, with the line.
-    pub fn read() -> Result<Self, UserError> {
-        let path = user_devices::path()?;
+    /// A [`SetupError`] where it cannot be read, with the line.
+    pub fn read() -> Result<Self, SetupError> {
+        Self::at(user_devices::path()?)
+    }
+
+    pub(crate) fn at(path: PathBuf) -> Result<Self, SetupError> {
         let text = match std::fs::read_to_string(&path) {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => String::new(),
-            Err(error) => return Err(UserError::reading(&path, &error)),
+            Err(error) => return Err(UserError::reading(&path, &error).into()),
         };
         Self::parse(path, &text)
     }
 
-    fn parse(path: PathBuf, text: &str) -> Result<Self, UserError> {
+    fn parse(path: PathBuf, text: &str) -> Result<Self, SetupError> {
         let devices = user_devices::parse(text, &path)?;
-        let text = text
-            .parse()
-            .map_err(|error| UserError::usage(format!("{error}")).at(path.display().to_string()))?;
+        let text = text.parse().map_err(|error: TomlError| {
+            UserError::usage(error.to_string()).at(path.display().to_string())
+        })?;
         Ok(Self {
             path,
             text,
@@ -55,12 +60,12 @@ impl UserFile {
     /// The user's device called `name`; `in_rig` are those of the rig, which may have been meant.
     ///
     /// # Errors
-    /// A [`UserError`] with the nearest name where the user has none.
+    /// [`SetupError::NoDevice`].
     pub fn device(
         &self,
         name: &str,
         in_rig: &[DeviceSection],
-    ) -> Result<&DeviceSection, UserError> {
+    ) -> Result<&DeviceSection, SetupError> {
         let found = self.devices.iter().find(|device| device.name == name);
         found.ok_or_else(|| unknown(name, &self.devices, in_rig))
     }
@@ -68,19 +73,17 @@ impl UserFile {
     /// Checks that neither the user nor the rig, whose devices are `in_rig`, has a device called `name`.
     ///
     /// # Errors
-    /// A [`UserError`] that says who has it.
-    pub fn check_free(&self, name: &str, in_rig: &[DeviceSection]) -> Result<(), UserError> {
+    /// [`SetupError::Taken`], [`SetupError::TakenInRig`].
+    pub fn check_free(&self, name: &str, in_rig: &[DeviceSection]) -> Result<(), SetupError> {
         let is_it = |device: &DeviceSection| device.name == name;
         if self.devices.iter().any(is_it) {
-            let what = format!("you have a device called '{name}' already");
-            let help = "give this one another name, or remove that one: `maulstick device remove`";
-            return Err(UserError::usage(what)
-                .at(self.path.display().to_string())
-                .help(help));
+            return Err(SetupError::Taken {
+                name: name.to_owned(),
+                file: self.path.clone(),
+            });
         }
         if in_rig.iter().any(is_it) {
-            let what = format!("the rig has a device called '{name}' already");
-            return Err(UserError::usage(what).help("give this one another name"));
+            return Err(SetupError::TakenInRig(name.to_owned()));
         }
         Ok(())
     }
@@ -88,13 +91,14 @@ impl UserFile {
     /// Puts a device into the file: what it had and has still, comments among it, stays as it was.
     ///
     /// # Errors
-    /// A [`UserError`] where the device is wrong, or the file cannot be written.
-    pub fn put(&mut self, device: &DeviceSection) -> Result<(), UserError> {
+    /// A [`SetupError`] where the device is wrong, or the file cannot be written.
+    pub fn put(&mut self, device: &DeviceSection) -> Result<(), SetupError> {
         self.change(device)?;
         self.write()
     }
 
-    fn change(&mut self, device: &DeviceSection) -> Result<(), UserError> {
+    /// As [`Self::put`], without writing the file.
+    pub(crate) fn change(&mut self, device: &DeviceSection) -> Result<(), SetupError> {
         check(device)?;
         let usual = DeviceSection::new(&device.name, &device.driver, &device.brush);
         let (wanted, usual) = (table(device)?, table(&usual)?);
@@ -133,13 +137,13 @@ impl UserFile {
     /// Gives a device another name; all else stays as it was.
     ///
     /// # Errors
-    /// A [`UserError`] where there is no such device, the name is invalid, or the file cannot be written.
-    pub fn rename(&mut self, device: &str, name: &str) -> Result<(), UserError> {
+    /// A [`SetupError`] where there is no such device, the name is invalid, or the file cannot be written.
+    pub fn rename(&mut self, device: &str, name: &str) -> Result<(), SetupError> {
         self.change_name(device, name)?;
         self.write()
     }
 
-    fn change_name(&mut self, device: &str, name: &str) -> Result<(), UserError> {
+    fn change_name(&mut self, device: &str, name: &str) -> Result<(), SetupError> {
         check(&DeviceSection {
             name: name.to_owned(),
             ..self.device(device, &[])?.clone()
@@ -156,26 +160,22 @@ impl UserFile {
     /// Takes a device out of the file.
     ///
     /// # Errors
-    /// A [`UserError`] where the file cannot be written.
-    pub fn remove(&mut self, name: &str) -> Result<(), UserError> {
+    /// A [`SetupError`] where the file cannot be written.
+    pub fn remove(&mut self, name: &str) -> Result<(), SetupError> {
         self.tables()?.retain(|table| name_of(table) != Some(name));
         self.write()
     }
 
-    fn tables(&mut self) -> Result<&mut ArrayOfTables, UserError> {
-        let place = self.path.display().to_string();
+    fn tables(&mut self) -> Result<&mut ArrayOfTables, SetupError> {
         let item = self
             .text
             .entry("device")
             .or_insert_with(|| Item::ArrayOfTables(ArrayOfTables::new()));
-        item.as_array_of_tables_mut().ok_or_else(|| {
-            UserError::usage("the devices are not sections [[device]]")
-                .at(place)
-                .help("write each as a section of its own")
-        })
+        let tables = item.as_array_of_tables_mut();
+        tables.ok_or_else(|| SetupError::NoSections(self.path.clone()))
     }
 
-    fn write(&mut self) -> Result<(), UserError> {
+    pub(crate) fn write(&mut self) -> Result<(), SetupError> {
         let text = self.text.to_string();
         self.devices = user_devices::parse(&text, &self.path)?;
         let failed = |error| UserError::writing(&self.path, &error);
@@ -187,7 +187,8 @@ impl UserFile {
         write_whole(&self.path, Kind::Own, |file| {
             file.write_all(text.as_bytes())
         })
-        .map_err(failed)
+        .map_err(failed)?;
+        Ok(())
     }
 }
 
@@ -226,10 +227,9 @@ fn name_of(table: &Table) -> Option<&str> {
 }
 
 /// A section as TOML.
-fn table(device: &DeviceSection) -> Result<Table, UserError> {
-    let written: DocumentMut = toml_text(device)?
-        .parse()
-        .map_err(|error| UserError::failure(format!("{error}")))?;
+fn table(device: &DeviceSection) -> Result<Table, SetupError> {
+    let written = toml_text(device)?.parse::<DocumentMut>();
+    let written = written.map_err(|error| UserError::failure(error.to_string()))?;
     Ok(written.as_table().clone())
 }
 
@@ -238,17 +238,12 @@ pub(crate) fn toml_text(device: &DeviceSection) -> Result<String, UserError> {
 }
 
 /// The error that neither the user nor the rig has a device called `name`.
-pub fn unknown(name: &str, own: &[DeviceSection], in_rig: &[DeviceSection]) -> UserError {
-    let what = match in_rig.is_empty() {
-        true => format!("you have no device called '{name}'"),
-        false => format!("there is no device called '{name}', neither of yours nor of the rig's"),
-    };
+pub(crate) fn unknown(name: &str, own: &[DeviceSection], in_rig: &[DeviceSection]) -> SetupError {
     let all = own.iter().chain(in_rig);
-    let names: BTreeSet<&str> = all.map(|device| device.name.as_str()).collect();
-    match names.is_empty() {
-        true => UserError::usage(what)
-            .help("`maulstick device list` shows what is attached, `maulstick device add` adds it"),
-        false => UserError::unknown(what, name, names),
+    let known: BTreeSet<String> = all.map(|device| device.name.clone()).collect();
+    SetupError::NoDevice {
+        name: name.to_owned(),
+        known: known.into_iter().collect(),
     }
 }
 
@@ -312,43 +307,40 @@ brush = \"main\"
     }
 
     #[test]
-    fn an_unknown_name_finds_the_nearest_of_the_users_and_of_the_rigs() {
+    fn an_unknown_name_is_refused_with_the_users_and_the_rigs() {
         let own = UserFile::parse("/x/devices.toml".into(), TEXT).expect("valid");
         let in_rig = [DeviceSection::new("phantom", "simulated", "main")];
-        let help = |own: &[DeviceSection], name: &str, in_rig: &[DeviceSection]| {
-            let fault = unknown(name, own, in_rig);
-            assert!(fault.what.contains(name), "{fault}");
-            fault.help.unwrap_or_default()
+        let known = |names: &[&str]| SetupError::NoDevice {
+            name: "phantm".to_owned(),
+            known: names.iter().map(|name| (*name).to_owned()).collect(),
         };
-        let both = help(&own.devices, "phantm", &in_rig);
-        assert!(both.contains("'phantom'") && both.contains("arm") && both.contains("puck"));
-        assert!(help(&own.devices, "amr", &in_rig).contains("'arm'"));
-        assert!(help(&[], "phantm", &in_rig).contains("'phantom'"));
-        assert!(help(&[], "phantm", &[]).contains("maulstick device add"));
+        assert_eq!(
+            unknown("phantm", &own.devices, &in_rig),
+            known(&["arm", "phantom", "puck"])
+        );
+        assert_eq!(unknown("phantm", &[], &[]), known(&[]));
     }
 
     #[test]
     fn names_that_are_taken_or_invalid_are_refused() {
         let mut file = UserFile::parse("/x/devices.toml".into(), TEXT).expect("valid");
-        let mut said = |device: &str, name: &str| {
+        let mut change = |device: &str, name: &str| {
             let fault = file.change_name(device, name).expect_err(name);
             assert_eq!(file.text.to_string(), TEXT);
-            fault.to_string()
+            fault
         };
-        for (device, name, what) in [
-            ("arn", "cup", "did you mean 'arm'"),
-            ("arm", "my arm", "'my arm' is not 1 to 32 letters"),
-            ("arm", "", "'' is not 1 to 32 letters"),
-            ("arm", "paint", "something called 'paint'"),
-        ] {
-            let said = said(device, name);
-            assert!(said.contains(what), "{said}");
+        assert!(matches!(change("arn", "cup"), SetupError::NoDevice { .. }));
+        for name in ["my arm", "", "paint"] {
+            assert!(
+                matches!(change("arm", name), SetupError::Fault(_)),
+                "{name}"
+            );
         }
         let rigs = [DeviceSection::new("phantom", "openhaptics", "main")];
-        let said = |name| file.check_free(name, &rigs).map_err(|fault| fault.what);
-        assert_eq!(said("cup"), Ok(()));
-        let taken = "have a device called 'puck' already";
-        assert!(said("puck").is_err_and(|what| what.contains(taken)));
-        assert!(said("phantom").is_err_and(|what| what.contains("the rig has")));
+        assert_eq!(file.check_free("cup", &rigs), Ok(()));
+        let taken = file.check_free("puck", &rigs);
+        assert!(matches!(taken, Err(SetupError::Taken { .. })));
+        let in_rig = SetupError::TakenInRig("phantom".to_owned());
+        assert_eq!(file.check_free("phantom", &rigs), Err(in_rig));
     }
 }

@@ -10,6 +10,7 @@
 //! | [`clock`] | times of a window system on the rig's clock |
 //! | [`stylus`] | the pen on the desk: touches, samples, what the window hears of it |
 //! | [`window`] | the window as a pen finds it, and the pen as the window finds it |
+//! | [`source`] | pens of a window system, whichever it is |
 //! | [`wayland`] | tablet-v2 of Wayland |
 //! | [`xinput`] | XInput 2 of X11 |
 //! | [`thread`](mod@thread) | the thread that reads |
@@ -72,6 +73,7 @@
 
 pub mod clock;
 pub mod reading;
+pub mod source;
 pub mod stylus;
 pub mod thread;
 pub mod wayland;

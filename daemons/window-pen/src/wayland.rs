@@ -27,7 +27,7 @@ use wayland_protocols::wp::tablet::zv2::client::{
 };
 
 use crate::reading::{Axes, PenReading, Tool};
-use crate::thread::{Source, gone, readable};
+use crate::source::{Source, gone, readable};
 
 /// Full pressure.
 const PRESSURE: f64 = 65_535.0;

@@ -18,21 +18,28 @@ pub const DAILY: [(&str, &str); 4] = [
     ("render", "take"),
 ];
 
-/// Groups of commands that have edits, by their numbers in [`EditCommand`].
+/// Groups of commands that have edits, in the order of their places in [`EditCommand`].
 const GROUPS: [&str; 5] = ["brush", "canvas", "layer", "painting", "palette"];
+const BRUSH: usize = 0;
+const CANVAS: usize = 1;
+const LAYER: usize = 2;
+const PAINTING: usize = 3;
+const PALETTE: usize = 4;
+/// Place behind the groups, of the edits in [`DAILY`].
+const BESIDE: usize = GROUPS.len();
 
 /// An edit of `maulstick brush`.
-pub type BrushEdit = EditCommand<0>;
+pub type BrushEdit = EditCommand<BRUSH>;
 /// An edit of `maulstick canvas`.
-pub type CanvasEdit = EditCommand<1>;
+pub type CanvasEdit = EditCommand<CANVAS>;
 /// An edit of `maulstick layer`.
-pub type LayerEdit = EditCommand<2>;
+pub type LayerEdit = EditCommand<LAYER>;
 /// An edit of `maulstick painting`.
-pub type PaintingEdit = EditCommand<3>;
+pub type PaintingEdit = EditCommand<PAINTING>;
 /// An edit of `maulstick palette`.
-pub type PaletteEdit = EditCommand<4>;
+pub type PaletteEdit = EditCommand<PALETTE>;
 /// A daily edit, beside the groups.
-pub type DailyEdit = EditCommand<5>;
+pub type DailyEdit = EditCommand<BESIDE>;
 
 /// An edit of the painting of a running rig, among the commands of its group, or beside the groups if it is daily.
 #[derive(Clone, Debug)]

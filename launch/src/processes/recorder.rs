@@ -53,7 +53,8 @@ pub(super) fn run(options: &RecorderOptions) -> Result<i32, UserError> {
         while let Some(event) = recorder.events.recv().await {
             LogFormat::Log.show(&event)?;
         }
-        recorder.ended().await.map(|()| 0)
+        recorder.ended().await?;
+        Ok(0)
     })
 }
 

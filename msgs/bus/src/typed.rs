@@ -9,7 +9,7 @@ use std::time::Duration;
 use maulstick_types::command::{CommandReply, CommandRequest, Outcome};
 use maulstick_types::{DecodeError, Flags, Header, Message, Origin, decode, encode};
 
-use crate::bus::{Bus, BusError, Publish, Qos, Subscription};
+use crate::bus::{Bus, BusError, Publish, Qos, Request, Subscription};
 use crate::inbox::{Queue, Wake};
 use crate::sender_arbiter::{Once, SenderArbiter, Verdict};
 
@@ -28,13 +28,27 @@ pub fn random_u64() -> u64 {
     RandomState::new().hash_one(std::process::id())
 }
 
+/// Answers a request with a message at a time of the rig, ns; a client that has gone needs none.
+pub fn answer<M: Message>(request: Request, me: &Origin, now_ns: u64, reply: &M) {
+    send(request, encode(me, Flags::NONE, 0, now_ns, now_ns, reply));
+}
+
+fn send(request: Request, reply: Result<Vec<u8>, DecodeError>) {
+    let topic = request.key.clone();
+    match reply.map(|bytes| request.answer(bytes)) {
+        Ok(Ok(())) => {}
+        Ok(Err(error)) => tracing::debug!("{topic}: a client has gone: {error}"),
+        Err(error) => tracing::error!("{topic}: no answer: {error}"),
+    }
+}
+
 /// Sends one kind of message on one topic, numbered from 0.
 pub struct Sender<M> {
     publish: Box<dyn Publish>,
     topic: String,
     origin: Origin,
     next: u64,
-    /// True once it was said that a message was too long.
+    /// True once a message that was too long was logged.
     told: bool,
     message: PhantomData<fn(M)>,
 }

@@ -28,8 +28,8 @@ impl Client {
     /// Joins the rig of this name.
     ///
     /// # Errors
-    /// A [`UserError`] where no rig of that name runs.
-    pub fn open(rig: impl AsRef<str>) -> Result<Self, UserError> {
+    /// [`BusError::NoRig`] where no rig of that name runs, another where it cannot be joined.
+    pub fn open(rig: impl AsRef<str>) -> Result<Self, BusError> {
         let (folder, info) = RigFolder::join(rig.as_ref())?;
         let dial = Dial {
             name: "cli".into(),

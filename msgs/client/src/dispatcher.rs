@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use maulstick_bus::typed::{ask, random_epoch};
 use maulstick_bus::{Bus, Qos, Wake};
 use maulstick_rig::command_client::CommandClient;
+use maulstick_rig::thread::try_start;
 use maulstick_rig::{UserError, asker};
 use maulstick_types::command::{Command, Detail, FileCommand};
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
@@ -37,7 +38,7 @@ const ASK: Duration = Duration::from_millis(300);
 enum Lane {
     /// Exports: each takes long, and other commands to the paint node do not wait for its end.
     Exports,
-    /// What switches off the force of a device, which waits for no earlier answer.
+    /// Request that switches off the force of a device, which waits for no earlier answer.
     ForceOff(String),
     /// All else for a process.
     Ordered(Peer),
@@ -118,12 +119,7 @@ impl CommandDispatcher {
                 outcomes: Arc::clone(outcomes),
                 wake: wake.clone(),
             };
-            let thread = std::thread::Builder::new().name("dispatcher".into());
-            let thread = thread.spawn(move || worker.run());
-            let thread = thread
-                .inspect_err(|error| tracing::error!("no thread for commands: {error}"))
-                .ok();
-            (queue_of, thread)
+            (queue_of, try_start("dispatcher", move || worker.run()))
         });
         let mut queue = queue_of
             .state

@@ -1,22 +1,16 @@
-//! Force on the hand over the last seconds, in bounded memory at any sample rate; and the device that paints.
+//! Force on the hand over the last seconds, in bounded memory at any sample rate.
 
 use std::collections::VecDeque;
 
-use maulstick_types::stylus::{StylusPose, StylusSample, axes};
-
-use crate::state::{Device, LiveRig};
+use maulstick_types::stylus::{StylusPose, StylusSample};
 
 /// Length of the history, s.
 pub const KEPT_S: f64 = 5.0;
 /// Length of a span, ns, and how many there are at most.
 const SPAN_NS: u64 = 20_000_000;
 const SPANS: usize = 250;
-/// Silence after which a device counts as away, ns; the window's own mouse sends only its moves.
+/// Silence after which a device counts as away, ns.
 const SILENCE_NS: u64 = 500_000_000;
-/// The mouse as a device.
-const POINTER: &str = "pointer";
-/// Smallest force that is shown, N.
-const LEAST_N: f64 = 0.02;
 
 /// Least and greatest force of a fiftieth of a second, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,6 +93,28 @@ impl ForceHistory {
         let heard = now_ns < newest.arrived_ns.saturating_add(SILENCE_NS);
         heard.then_some(newest.force_n)
     }
+
+    /// True while the newest sample is near the desk and not old, or never grows old.
+    pub(crate) fn is_near(&self, now_ns: u64, aging: Aging) -> bool {
+        self.newest.as_ref().is_some_and(|newest| {
+            let heard = now_ns < newest.arrived_ns.saturating_add(SILENCE_NS);
+            newest.in_range && (heard || aging == Aging::Never)
+        })
+    }
+
+    /// Point on the desk of the newest sample, m.
+    pub(crate) fn place_m(&self) -> Option<[f64; 3]> {
+        self.newest.as_ref().map(|newest| newest.place_m)
+    }
+}
+
+/// Aging of a device's newest sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Aging {
+    /// A silent device is away.
+    Silence,
+    /// The window's own mouse sends only its moves.
+    Never,
 }
 
 /// Length of a force, N.
@@ -107,41 +123,8 @@ pub fn size(force_n: [f64; 3]) -> f64 {
     force_n.iter().map(|part| part * part).sum::<f64>().sqrt()
 }
 
-fn is_near(device: &Device, now_ns: u64) -> bool {
-    let is_pointer = device.info.as_ref().is_some_and(|it| it.driver == POINTER);
-    device.forces.newest.as_ref().is_some_and(|newest| {
-        let heard = now_ns < newest.arrived_ns.saturating_add(SILENCE_NS);
-        newest.in_range && (heard || is_pointer)
-    })
-}
-
-/// The device that moves a brush: of those near the desk the one of highest priority.
-#[must_use]
-pub fn active_device<'a>(rig: &'a LiveRig, brush: &str) -> Option<(&'a str, &'a Device)> {
-    let near = rig.devices.iter().filter_map(|(name, device)| {
-        let info = device.info.as_ref()?;
-        let moves = info.brush == brush && is_near(device, rig.now_ns);
-        moves.then_some((info.priority, name.as_str(), device))
-    });
-    let first = near.max_by_key(|(priority, ..)| *priority)?;
-    Some((first.1, first.2))
-}
-
-/// Point on the desk where the force of the device that moves a brush acts, m, and that force, N; `None` if it is too small to
-/// show.
-#[must_use]
-pub fn force_arrow(rig: &LiveRig, brush: &str) -> Option<([f64; 3], [f64; 3])> {
-    let (_, device) = active_device(rig, brush)?;
-    let drives = device.info.as_ref()?.drives & axes::FORCE != 0;
-    let force_n = device.forces.force_n(rig.now_ns)?;
-    let place_m = device.forces.newest.as_ref()?.place_m;
-    (drives && size(force_n) >= LEAST_N).then_some((place_m, force_n))
-}
-
 #[cfg(test)]
 mod tests {
-    use maulstick_types::stylus::StylusInfo;
-
     use super::*;
 
     fn sample(force_n: [f64; 3]) -> StylusSample {
@@ -173,41 +156,5 @@ mod tests {
         assert_eq!(line.iter().filter(|at| at[1] == 3.0).count(), 1);
         assert_eq!(forces.force_n(60_000_000_000), Some([0.0, 0.0, 1.0]));
         assert_eq!(forces.force_n(61_000_000_000), None, "it is silent");
-    }
-
-    #[test]
-    fn of_those_near_the_one_of_highest_priority_paints_and_shows_its_arrow() {
-        let mut rig = LiveRig::new("t");
-        rig.now_ns = 10_000_000_000;
-        for (name, driver, priority, drives) in [
-            ("mouse", POINTER, -100, 0),
-            ("pen", "pen", 5, 0),
-            ("arm", "simulated", 10, axes::FORCE),
-        ] {
-            let device = rig.devices.entry(name.to_owned()).or_default();
-            device.info = Some(StylusInfo {
-                device: name.into(),
-                driver: driver.into(),
-                brush: "main".into(),
-                priority,
-                senses: 0,
-                drives,
-                rate_hz: 0.0,
-                max_force_n: 0.0,
-                max_stiffness_n_m: 0.0,
-                workspace_m: [0.0; 6],
-            });
-            device.forces.add(9_900_000_000, &sample([0.0, 0.0, 0.5]));
-        }
-        let who = |rig: &LiveRig| active_device(rig, "main").map(|(name, _)| name.to_owned());
-        assert_eq!(who(&rig).as_deref(), Some("arm"));
-        let (_, force_n) = force_arrow(&rig, "main").expect("an arrow");
-        assert_eq!(force_n, [0.0, 0.0, 0.5]);
-        let arm = rig.devices.get_mut("arm").expect("an arm");
-        arm.forces.add(9_950_000_000, &StylusSample::away());
-        assert_eq!(who(&rig).as_deref(), Some("pen"));
-        assert_eq!(force_arrow(&rig, "main"), None, "a pen gives no force");
-        rig.now_ns += SILENCE_NS;
-        assert_eq!(who(&rig).as_deref(), Some("mouse"), "it keeps still");
     }
 }

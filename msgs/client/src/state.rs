@@ -5,11 +5,16 @@ use std::collections::BTreeMap;
 use maulstick_bus::typed::Refusal;
 use maulstick_types::paint::{Decision, PaintStatus};
 use maulstick_types::scene::{CANVAS, PALETTE, Scene, Surface};
-use maulstick_types::stylus::{StylusInfo, StylusStatus};
+use maulstick_types::stylus::{StylusInfo, StylusStatus, axes};
 
-use crate::force_history::ForceHistory;
+use crate::force_history::{Aging, ForceHistory, size};
 use crate::sample_history::SampleHistory;
 use crate::thumbnails::Thumbnails;
+
+/// Driver of the mouse as a device.
+const POINTER: &str = "pointer";
+/// Smallest force that is shown, N.
+const LEAST_N: f64 = 0.02;
 
 /// An input device of the rig.
 #[derive(Clone, Debug, Default)]
@@ -22,7 +27,7 @@ pub struct Device {
     pub heard_ns: u64,
     /// Its newest samples.
     pub forces: ForceHistory,
-    /// What they sensed.
+    /// Its newest samples, with their senses.
     pub samples: SampleHistory,
 }
 
@@ -107,5 +112,84 @@ impl LiveRig {
     #[must_use]
     pub fn palette(&self) -> Option<&Surface> {
         self.surface(PALETTE)
+    }
+
+    /// The device that moves a brush: of those near the desk the one of highest priority.
+    #[must_use]
+    pub fn active_device(&self, brush: &str) -> Option<(&str, &Device)> {
+        let near = self.devices.iter().filter_map(|(name, device)| {
+            let info = device.info.as_ref()?;
+            let aging = if info.driver == POINTER {
+                Aging::Never
+            } else {
+                Aging::Silence
+            };
+            let moves = info.brush == brush && device.forces.is_near(self.now_ns, aging);
+            moves.then_some((info.priority, name.as_str(), device))
+        });
+        let first = near.max_by_key(|(priority, ..)| *priority)?;
+        Some((first.1, first.2))
+    }
+
+    /// Point on the desk where the force of the device that moves a brush acts, m, and that force, N; `None` if it is too
+    /// small to show.
+    #[must_use]
+    pub fn force_arrow(&self, brush: &str) -> Option<([f64; 3], [f64; 3])> {
+        let (_, device) = self.active_device(brush)?;
+        let drives = device.info.as_ref()?.drives & axes::FORCE != 0;
+        let force_n = device.forces.force_n(self.now_ns)?;
+        let place_m = device.forces.place_m()?;
+        (drives && size(force_n) >= LEAST_N).then_some((place_m, force_n))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_types::stylus::StylusSample;
+
+    use super::*;
+
+    fn sample(force_n: [f64; 3]) -> StylusSample {
+        StylusSample {
+            force_n,
+            in_range: true,
+            ..StylusSample::away()
+        }
+    }
+
+    #[test]
+    fn of_those_near_the_one_of_highest_priority_paints_and_shows_its_arrow() {
+        let mut rig = LiveRig::new("t");
+        rig.now_ns = 10_000_000_000;
+        for (name, driver, priority, drives) in [
+            ("mouse", POINTER, -100, 0),
+            ("pen", "pen", 5, 0),
+            ("arm", "simulated", 10, axes::FORCE),
+        ] {
+            let device = rig.devices.entry(name.to_owned()).or_default();
+            device.info = Some(StylusInfo {
+                device: name.into(),
+                driver: driver.into(),
+                brush: "main".into(),
+                priority,
+                senses: 0,
+                drives,
+                rate_hz: 0.0,
+                max_force_n: 0.0,
+                max_stiffness_n_m: 0.0,
+                workspace_m: [0.0; 6],
+            });
+            device.forces.add(9_900_000_000, &sample([0.0, 0.0, 0.5]));
+        }
+        let who = |rig: &LiveRig| rig.active_device("main").map(|(name, _)| name.to_owned());
+        assert_eq!(who(&rig).as_deref(), Some("arm"));
+        let (_, force_n) = rig.force_arrow("main").expect("an arrow");
+        assert_eq!(force_n, [0.0, 0.0, 0.5]);
+        let arm = rig.devices.get_mut("arm").expect("an arm");
+        arm.forces.add(9_950_000_000, &StylusSample::away());
+        assert_eq!(who(&rig).as_deref(), Some("pen"));
+        assert_eq!(rig.force_arrow("main"), None, "a pen gives no force");
+        rig.now_ns += 500_000_000;
+        assert_eq!(who(&rig).as_deref(), Some("mouse"), "it keeps still");
     }
 }

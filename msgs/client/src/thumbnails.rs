@@ -9,6 +9,7 @@ use std::time::Duration;
 use maulstick_bus::typed::ask;
 use maulstick_bus::{Qos, Wake};
 use maulstick_rig::NodeHandle;
+use maulstick_rig::thread::try_start;
 use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
 
 /// Longer side of a version's small picture, pixels, and how long one may take.
@@ -167,16 +168,10 @@ impl ThumbnailFetcher {
                 wake.ring();
             }
         };
-        let thread = std::thread::Builder::new()
-            .name("thumbnails".into())
-            .spawn(run);
-        let thread = thread
-            .inspect_err(|error| tracing::error!("no thread for small pictures: {error}"))
-            .ok();
         Self {
             questions: Some(questions),
             answers,
-            thread,
+            thread: try_start("thumbnails", run),
         }
     }
 

@@ -6,6 +6,7 @@
 //! | [`free`] | names that are not taken |
 //! | [`open`] | databases that this process has open, by device and inode |
 //! | [`private`] | files that their user alone may read |
+//! | [`same`] | names of one file |
 //! | [`whole`] | files that are whole under their name, or not there at all |
 //!
 //! A table is written while the disk fails: the one before it stays, whole.
@@ -40,12 +41,14 @@ pub mod free;
 pub mod kind;
 pub mod open;
 pub mod private;
+pub mod same;
 pub mod whole;
 
 pub use free::{companion, first_free};
 pub use kind::{COMPANIONS, Kind, allow_overwriting, ending, gives_way, is_companion, is_painting};
 pub use open::{FileId, OpenDatabase, read_head};
 pub use private::{create_private, open_private};
+pub use same::is_same;
 pub use whole::{
     Unfinished, check_folder, check_writable, clear_on_signals, write_folder, write_whole,
     write_whole_at,

@@ -13,6 +13,7 @@
 //! | [`program`] | the program of this process, for those that it starts |
 //! | [`pulse`] | the status of a node, by which the launcher sees that it makes progress |
 //! | [`sketches`] | paintings that have no name yet, in the user's state folder |
+//! | [`thread`](mod@thread) | threads by their names |
 //! | [`table_file`] | tables in files that a user names |
 //! | [`whole_path`](mod@whole_path) | paths as messages carry them |
 //! | [`stop`] | the stop flag: a signal, or the launcher's end |
@@ -75,6 +76,7 @@ pub mod size;
 pub mod sketches;
 pub mod stop;
 pub mod table_file;
+pub mod thread;
 pub mod user_devices;
 pub mod user_error;
 pub mod whole_path;

@@ -168,11 +168,7 @@ impl NodeHandle {
                 std::thread::sleep(Duration::from_nanos(NodeStatus::PERIOD_NS));
             }
         };
-        std::thread::Builder::new()
-            .name("pulse".into())
-            .spawn(beat)
-            .map_err(|error| UserError::failure(error.to_string()))?;
-        Ok(())
+        crate::thread::start("pulse", beat).map(drop)
     }
 
     /// The other programs of the rig, and what each sends, receives and answers.

@@ -224,7 +224,7 @@ impl Traffic {
         }
     }
 
-    /// Takes in a message of a topic.
+    /// Adds a message of a topic.
     pub fn add(&mut self, topic: &str, message: &Arrived) {
         let key = (topic.to_owned(), message.header.origin());
         let stream = self.streams.entry(key).or_default();

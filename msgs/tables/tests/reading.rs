@@ -1,4 +1,4 @@
-//! What is read, and what is refused.
+//! Tables that are read, and tables that are refused.
 
 use maulstick_tables::{Fault, HeadingLine, Separator, Table, decode, shown};
 

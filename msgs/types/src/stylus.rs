@@ -112,7 +112,7 @@ impl StylusStatus {
         }
     }
 
-    /// Why there is no device at present; `None` while there is one.
+    /// Reason why there is no device at present; `None` while there is one.
     #[must_use]
     pub fn trouble(&self) -> Option<Trouble<'_>> {
         (!self.trouble.is_empty()).then_some(Trouble {

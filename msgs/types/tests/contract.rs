@@ -1,4 +1,4 @@
-//! What devices of the contract's first version send is understood for ever.
+//! Messages of devices of the contract's first version, which are understood for ever.
 
 use std::collections::BTreeSet;
 

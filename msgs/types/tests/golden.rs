@@ -6,35 +6,27 @@ use maulstick_types::brush::{
     BrushConsumed, BrushDef, BrushLook, BrushRelief, BrushState, Contact, Solve,
 };
 use maulstick_types::command::advice::Advice;
-use maulstick_types::command::{
-    After, Command, CommandReply, CommandRequest, Detail, GapRequest, Outcome,
-};
+use maulstick_types::command::{Detail, GapRequest, Outcome};
 use maulstick_types::haptics::{
-    ContactModel, FluidForce, ForceLaw, ForceOrder, ForceRequest, Grain, GuideModel, HeightPatch,
-    HermiteKnot, height_bytes,
+    FluidForce, ForceLaw, ForceOrder, ForceRequest, GuideModel, height_bytes,
 };
 use maulstick_types::paint::{
-    BrushCredit, Decision, Entry, FrameHolds, FrameReply, FrameRequest, FrameTile, JournalEntry,
-    PaintConsumed, StepName, ThumbnailRequest,
+    BrushCredit, Decision, Entry, FrameHolds, FrameReply, FrameRequest, FrameTile, PaintConsumed,
+    StepName, ThumbnailRequest,
 };
 use maulstick_types::scene::{
-    Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
+    Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, WellKind,
 };
-use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, TakeEnd, TakeStatus};
+use maulstick_types::stylus::{StylusInfo, StylusPose, TakeEnd, TakeStatus};
 use maulstick_types::window::PendingOrders;
 use maulstick_types::{CATALOGUE, Edit, Flags, Message, Mixture, Origin, decode, encode};
+use parts::messages::{
+    after, command, entry, knot, local, mixture, model, pen, reply, sample, well,
+};
 use parts::{
     control, files, force_reply, handling, node_status, paint_status, pose, presented, status,
     takes, thumbnail,
 };
-
-fn after() -> After {
-    After {
-        brush: 7,
-        epoch: 8,
-        sequence: 9,
-    }
-}
 
 /// A line `Name/version hash hex` of a message, which must also come back from its bytes.
 fn line<M: Message + PartialEq + std::fmt::Debug>(message: &M) -> String {
@@ -106,73 +98,9 @@ fn details() -> [Detail; 5] {
     ]
 }
 
-fn all() -> String {
-    let mixture = Mixture::pure("Bone Black");
-    let sample = |pose: StylusPose| StylusSample {
-        senses: 5,
-        pose,
-        velocity_m_s: [1.0, 2.0, 3.0],
-        force_n: [0.5, 0.25, 0.125],
-        switches: 3,
-        in_range: true,
-    };
-    let pen = StylusPose::Contact {
-        point_m: [0.01, 0.02, 0.0],
-        tilt_rad: [0.1, -0.1],
-        twist_rad: 0.5,
-        pressure: 0.75,
-    };
-    let command = |command: Command| CommandRequest {
-        client: 1,
-        number: 2,
-        after: Some(after()),
-        command,
-    };
-    let model = |law: ForceLaw| ContactModel {
-        device: 1,
-        device_epoch: 2,
-        brush: "main".into(),
-        plane_point_m: [0.0; 3],
-        plane_normal: [0.0, 0.0, 1.0],
-        friction_static: 0.3,
-        friction_kinetic: 0.2,
-        viscous_n_s_m: 0.1,
-        grain: Grain {
-            amplitude: 0.01,
-            wavelength_m: 0.001,
-            seed: 4,
-        },
-        law,
-        head_length_m: 0.025,
-        time_to_live_ns: 5,
-        recovery_ns: 6,
-        relief: HeightPatch {
-            corner_m: [0.1, 0.2, 0.3],
-            along: [1.0, 0.0, 0.0],
-            cell_m: 0.001,
-            heights_um: height_bytes([7, -8, 300]),
-        },
-        depth_m: 0.002,
-    };
-    let knot = HermiteKnot {
-        depth: 0.5,
-        force_n: 1.0,
-        slope_n: 2.0,
-    };
-    let local = ForceLaw::Local {
-        pose: pose(),
-        force_n: [1.0; 3],
-        stiffness_n_m: [[2.0; 3]; 3],
-    };
-    let well = |kind: WellKind| Well {
-        center_m: [0.1, 0.2],
-        radius_m: 0.01,
-        kind,
-    };
-    let entry = |entry: Entry| JournalEntry { index: 3, entry };
-    let reply = |outcome: Outcome| CommandReply { number: 4, outcome };
+fn devices() -> [String; 6] {
     [
-        line(&sample(pen)),
+        line(&sample(pen())),
         line(&sample(StylusPose::Ferrule { pose: pose() })),
         line(&StylusInfo {
             device: "pen".into(),
@@ -199,13 +127,20 @@ fn all() -> String {
             }),
         }),
         line(&control()),
+    ]
+}
+
+fn haptics() -> [String; 11] {
+    [
         line(&model(ForceLaw::None)),
         line(&model(ForceLaw::Linear {
             k1_n: 0.8,
             k2_n: 6.0,
         })),
-        line(&model(ForceLaw::Hermite { knots: vec![knot] })),
-        line(&model(local)),
+        line(&model(ForceLaw::Hermite {
+            knots: vec![knot()],
+        })),
+        line(&model(local())),
         line(&model(ForceLaw::Rigid {
             stiffness_n_m: 300.0,
         })),
@@ -246,6 +181,11 @@ fn all() -> String {
             },
         )),
         line(&force_reply()),
+    ]
+}
+
+fn brushes() -> [String; 6] {
+    [
         line(&BrushDef {
             brush: "main".into(),
             toml: "kind = 1".into(),
@@ -303,64 +243,74 @@ fn all() -> String {
                 file: 4,
             }],
         }),
-        line(&Scene {
-            version: 1,
-            surfaces: vec![Surface {
-                id: 0,
-                pose: pose(),
-                zoom: 1.0,
-                cells: [64, 32],
-                cell_m: 2.5e-4,
-                ground: "gesso".into(),
-                tooth: "linen".into(),
-                tooth_seed: 2,
-                wells: vec![
-                    well(WellKind::Cleaner),
-                    well(WellKind::Medium),
-                    well(WellKind::Paint {
-                        mixture: mixture.clone(),
-                    }),
-                ],
-                stain_m: 1e-5,
-                piles_last: true,
-                model: "impasto".into(),
-            }],
-            paints: vec![PaintSlot {
-                name: "Bone Black".into(),
-                masstone: [0.01; 3],
-                tint: [0.5; 3],
-                file_hash: 3,
-            }],
-            light: Light {
-                direction: [0.0, 0.0, 1.0],
-                intensity: 1.0,
-                illuminant: "D65".into(),
-                spectrum: vec![1.0; 2],
-                exposure: 0.9,
-                relief: 2.0,
-                softness: 0.1,
-                observer: 1964,
-                rule: "gauss".into(),
-                samples: 8,
-                adapted: false,
-            },
-            tunings: vec![Tuning {
-                brush: "main".into(),
-                stiffness: 1.5,
-                wetness: 0.5,
-            }],
-            layers: vec![Layer {
-                number: 1,
-                name: "sky".into(),
-                opacity: 0.5,
-            }],
-            versions: vec![NamedVersion {
-                name: "warm".into(),
-                parent: "sketch".into(),
-                here: true,
-            }],
-            handlings: vec![handling()],
-        }),
+    ]
+}
+
+fn light() -> Light {
+    Light {
+        direction: [0.0, 0.0, 1.0],
+        intensity: 1.0,
+        illuminant: "D65".into(),
+        spectrum: vec![1.0; 2],
+        exposure: 0.9,
+        relief: 2.0,
+        softness: 0.1,
+        observer: 1964,
+        rule: "gauss".into(),
+        samples: 8,
+        adapted: false,
+    }
+}
+
+fn scene() -> [String; 1] {
+    [line(&Scene {
+        version: 1,
+        surfaces: vec![Surface {
+            id: 0,
+            pose: pose(),
+            zoom: 1.0,
+            cells: [64, 32],
+            cell_m: 2.5e-4,
+            ground: "gesso".into(),
+            tooth: "linen".into(),
+            tooth_seed: 2,
+            wells: vec![
+                well(WellKind::Cleaner),
+                well(WellKind::Medium),
+                well(WellKind::Paint { mixture: mixture() }),
+            ],
+            stain_m: 1e-5,
+            piles_last: true,
+            model: "impasto".into(),
+        }],
+        paints: vec![PaintSlot {
+            name: "Bone Black".into(),
+            masstone: [0.01; 3],
+            tint: [0.5; 3],
+            file_hash: 3,
+        }],
+        light: light(),
+        tunings: vec![Tuning {
+            brush: "main".into(),
+            stiffness: 1.5,
+            wetness: 0.5,
+        }],
+        layers: vec![Layer {
+            number: 1,
+            name: "sky".into(),
+            opacity: 0.5,
+        }],
+        versions: vec![NamedVersion {
+            name: "warm".into(),
+            parent: "sketch".into(),
+            here: true,
+        }],
+        handlings: vec![handling()],
+    })]
+}
+
+fn journal() -> [String; 6] {
+    [
         line(&entry(Entry::States {
             brush: "main".into(),
             epoch: 1,
@@ -389,6 +339,11 @@ fn all() -> String {
             brush: "main".into(),
             toml: "kind".into(),
         })),
+    ]
+}
+
+fn views() -> [String; 6] {
+    [
         line(&FrameRequest {
             surface: 0,
             since: 1,
@@ -431,6 +386,11 @@ fn all() -> String {
             step: Some(7),
         }),
         line(&thumbnail()),
+    ]
+}
+
+fn commands() -> [String; 8] {
+    [
         line(&command(edit().into())),
         takes().map(|asked| line(&command(asked.into()))).concat(),
         files().map(|asked| line(&command(asked))).concat(),
@@ -452,8 +412,21 @@ fn all() -> String {
             to: 3,
         }),
     ]
+}
+
+/// A line for each message, and for each kind of some.
+fn all() -> String {
+    [
+        devices().concat(),
+        haptics().concat(),
+        brushes().concat(),
+        scene().concat(),
+        journal().concat(),
+        views().concat(),
+        commands().concat(),
+        windows_and_nodes(),
+    ]
     .concat()
-        + &windows_and_nodes()
 }
 
 /// Examples of messages whose order follows no other.

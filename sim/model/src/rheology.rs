@@ -17,9 +17,29 @@ pub struct Rheology {
 }
 
 impl Rheology {
+    /// Oil paint from the tube (Baxter 2004, § 5.2).
+    pub const TUBE: Self = Self {
+        viscosity_m2_s: 1e-2,
+        thinning: -4.6,
+        bears: 0.2,
+        yields: yield_left,
+    };
+
     /// Kinematic viscosity of paint with this share of thinner, m²/s.
     #[must_use]
     pub fn thinned_m2_s(&self, thinner: f64) -> f64 {
         self.viscosity_m2_s * exp(self.thinning * thinner)
     }
+}
+
+/// Yield stress of paint of which `thinner` is a share of 0 to 1, by that of paint from the tube: half of it takes it away.
+#[must_use]
+#[inline(always)]
+pub fn yield_left(thinner: f32) -> f32 {
+    let left = if thinner < 0.5 {
+        1.0 - 2.0 * thinner
+    } else {
+        0.0
+    };
+    left * left * left
 }

@@ -15,7 +15,6 @@ use crate::settings::preferences::Preferences;
 use crate::view::camera::View;
 use crate::view::fit_crosses;
 use crate::view::well_labels::{self, Shown};
-use maulstick_client::force_history;
 
 /// A newton is shown so long, m.
 const ARROW_M_N: f64 = 0.02;
@@ -214,10 +213,9 @@ impl App {
     pub(super) fn draw_force(&self, painter: &egui::Painter, view: &View) {
         let seen =
             self.studio.preferences.window.panels && self.studio.preferences.is_open("Device");
-        let Some((place_m, force_n)) =
-            force_history::force_arrow(&self.studio.rig.live, self.studio.rig.brush_name())
-                .filter(|_| seen)
-        else {
+        let rig = &self.studio.rig;
+        let arrow = rig.live.force_arrow(rig.brush_name());
+        let Some((place_m, force_n)) = arrow.filter(|_| seen) else {
             return;
         };
         let from = DVec3::from_array(place_m);

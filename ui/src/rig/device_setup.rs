@@ -44,7 +44,7 @@ enum Made {
 
 /// Makes a change.
 fn carry_out(change: &SetupChange, rig: &str) -> Result<Made, UserError> {
-    match change {
+    let made = match change {
         SetupChange::Allow => allow().map(|()| Made::Allowed),
         SetupChange::Add(new) => add(new, rig).map(Made::Added),
         SetupChange::Use(wanted) => {
@@ -55,7 +55,8 @@ fn carry_out(change: &SetupChange, rig: &str) -> Result<Made, UserError> {
             name: name.clone(),
         }),
         SetupChange::Remove(device) => remove(device, rig).map(|_| Made::Removed(device.clone())),
-    }
+    };
+    Ok(made?)
 }
 
 /// What the newest listing shows.
@@ -113,7 +114,7 @@ impl Default for DeviceSetupRunner {
         Self::new(Functions {
             carry_out,
             list: DeviceListing::read,
-            fit,
+            fit: |settings, stop, report| Ok(fit(settings, stop, report)?),
         })
     }
 }

@@ -3,10 +3,12 @@
 //! | module | content |
 //! | --- | --- |
 //! | [`recorder`], [`player`] | start and end of a recording and of a replay |
+//! | [`cut_off`] | recordings that ended early |
 //! | [`progress`] | where they are |
 //! | [`recording_mark`] | the red dot while a recording is written |
 //! | [`transport_bar`] | the bar and the keys while one is played |
 
+mod cut_off;
 pub(crate) mod player;
 pub(crate) mod progress;
 pub(crate) mod recorder;
@@ -19,13 +21,13 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use eframe::egui::Context;
-use maulstick_recorder::{Order, Player, Recorder, ReplaySettings, TakePlace};
-use maulstick_rig::UserError;
+use maulstick_recorder::{Order, Player, Recorder, RecorderError, ReplaySettings, TakePlace};
 use maulstick_ui_kit::notifications::Notifications;
 use tokio::runtime::{Builder, Runtime};
 use tokio::time::timeout;
 
 use crate::rig::state::RigState;
+use crate::sessions::cut_off::CutOffRecordings;
 
 /// File ending of a recording.
 pub(crate) const RECORDING: &str = "mcap";
@@ -71,6 +73,7 @@ pub(crate) struct Sessions {
     runtime: Option<Runtime>,
     recorder: Option<Recorder>,
     player: Option<Player>,
+    cut_off: CutOffRecordings,
 }
 
 impl Sessions {
@@ -89,6 +92,8 @@ impl Sessions {
                 );
             }
         }
+        self.cut_off
+            .poll(context, &recorder::painting(rig), notifications);
         if let Some(recorder) = &mut self.recorder
             && recorder::poll(recorder, context, rig, notifications)
         {
@@ -176,10 +181,10 @@ impl Drop for Sessions {
 }
 
 /// Waits for an end, not longer than the launcher does.
-async fn ended(what: &str, end: impl Future<Output = Result<(), UserError>>) {
+async fn ended(what: &str, end: impl Future<Output = Result<(), RecorderError>>) {
     match timeout(LONGEST_END, end).await {
         Ok(Ok(())) => {}
-        Ok(Err(fault)) => tracing::warn!("the {what}: {}", fault.what),
+        Ok(Err(fault)) => tracing::warn!("the {what}: {fault}"),
         Err(_) => tracing::warn!("the {what} does not end"),
     }
 }

@@ -3,8 +3,7 @@
 use std::time::Duration;
 
 use eframe::egui::Context;
-use maulstick_recorder::{Order, Player, ReplaySettings};
-use maulstick_rig::UserError;
+use maulstick_recorder::{Order, Player, RecorderError, ReplaySettings};
 use maulstick_ui_kit::notifications::Notifications;
 use tokio::runtime::Runtime;
 
@@ -55,7 +54,7 @@ pub(super) fn poll(
 }
 
 fn notify_end(
-    result: Result<(), UserError>,
+    result: Result<(), RecorderError>,
     replay: &ReplayProgress,
     notifications: &mut Notifications,
 ) {
@@ -68,6 +67,6 @@ fn notify_end(
             let name = paths::name(&replay.recording);
             notifications.note(tr!("{name} has been played.", name));
         }
-        (Err(fault), _) => notifications.of(&fault),
+        (Err(error), _) => notifications.of(&error.into()),
     }
 }

@@ -7,6 +7,7 @@ use eframe::egui::Context;
 use maulstick_recorder::{
     Continuation, CopyTrouble, Recorder, RecorderEvent, RecorderSettings, Ring,
 };
+use maulstick_rig::UserError;
 use maulstick_ui_kit::notifications::Notifications;
 use tokio::runtime::Runtime;
 
@@ -56,7 +57,8 @@ pub(super) fn poll(
     let file = recording.map_or_else(String::new, |recording| paths::shown(&recording.file));
     match result {
         Ok(()) => notifications.note(tr!("The recording is in {file}.", file)),
-        Err(fault) => {
+        Err(error) => {
+            let fault = UserError::from(error);
             let help = fault
                 .help
                 .unwrap_or_else(|| tr!("What came before is in {file}. Record anew.", file));
@@ -79,7 +81,7 @@ pub(super) fn notify(event: &RecorderEvent, notifications: &mut Notifications) {
         RecorderEvent::PaintingUnavailable(trouble) => {
             let why = match trouble {
                 CopyTrouble::InMemory => tr!("the painting is in no file"),
-                CopyTrouble::Failed(fault) => &fault.what,
+                CopyTrouble::Failed(error) => &error.to_string(),
             };
             notifications.fault(
                 tr!("So far this recording cannot be painted again: {why}", why),
@@ -94,7 +96,7 @@ pub(super) fn notify(event: &RecorderEvent, notifications: &mut Notifications) {
 }
 
 /// The file of the painting; empty for one in memory.
-fn painting(rig: &RigState) -> PathBuf {
+pub(super) fn painting(rig: &RigState) -> PathBuf {
     let node = rig.live.paint.as_ref();
     node.map_or_else(PathBuf::new, |node| PathBuf::from(&node.status.path))
 }

@@ -81,6 +81,24 @@ impl Desk {
     }
 }
 
+#[test]
+fn a_recording_that_ended_early_is_offered_once() {
+    let mut desk = Desk::new("Sea.maul");
+    let file = desk.folder.path().join("Sea.mcap");
+    let whole = std::fs::File::create(&file).expect("created");
+    let mut writer = maulstick_streams::RecordingWriter::begin(whole).expect("begun");
+    let noted = writer.note("recording", std::collections::BTreeMap::default());
+    noted.and_then(|()| writer.finish()).expect("written");
+    let bytes = std::fs::read(&file).expect("there");
+    std::fs::write(&file, &bytes[..bytes.len() - 20]).expect("cut");
+    desk.until(|desk| !desk.shown.is_empty());
+    assert_eq!(desk.shown.len(), 1);
+    assert_eq!(desk.shown[0].0, Severity::Fault);
+    desk.sessions = Sessions::default();
+    let found = maulstick_recorder::complete_in(desk.folder.path());
+    assert_eq!(found, Ok(vec![]), "it is whole");
+}
+
 fn shown(notifications: &Notifications) -> Vec<(Severity, String)> {
     let shown = notifications.shown().iter();
     shown

@@ -62,6 +62,28 @@ pub fn salvage(path: &Path) -> Result<Salvage, UserError> {
     })
 }
 
+impl Take {
+    /// Reads a take.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the file cannot be read, is damaged, or holds no samples of one stylus.
+    pub fn read(path: &Path) -> Result<Self, UserError> {
+        let salvage = salvage(path)?;
+        match salvage.damage {
+            None => Ok(salvage.take),
+            Some(damage) => {
+                let (count, name) = (salvage.take.samples.len(), path.display());
+                Err(UserError::usage(format!("the take is damaged: {damage}"))
+                    .at(name.to_string())
+                    .help(format!(
+                        "{count} samples can be read: `maulstick take recover {name} -o whole.mcap` keeps them, \
+                         and `maulstick take embed` embeds again what they are painted with"
+                    )))
+            }
+        }
+    }
+}
+
 /// The reason why a file gives nothing.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Refusal {

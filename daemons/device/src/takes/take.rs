@@ -12,7 +12,6 @@ use maulstick_types::stylus::StylusSample;
 use maulstick_types::{Flags, Message as _, Origin, encode, name_hash};
 use mcap::records::MessageHeader;
 
-use crate::salvage::salvage;
 use crate::take_setup::TakeSetup;
 
 /// Encoding of the messages: the bus's own header and body.
@@ -41,26 +40,6 @@ impl Take {
         match (self.samples.first(), self.samples.last()) {
             (Some(first), Some(last)) => last.time_ns - first.time_ns,
             _ => 0,
-        }
-    }
-
-    /// Reads a take.
-    ///
-    /// # Errors
-    /// A [`UserError`] where the file cannot be read, is damaged, or holds no samples of one stylus.
-    pub fn read(path: &Path) -> Result<Self, UserError> {
-        let salvage = salvage(path)?;
-        match salvage.damage {
-            None => Ok(salvage.take),
-            Some(damage) => {
-                let (count, name) = (salvage.take.samples.len(), path.display());
-                Err(UserError::usage(format!("the take is damaged: {damage}"))
-                    .at(name.to_string())
-                    .help(format!(
-                        "{count} samples can be read: `maulstick take recover {name} -o whole.mcap` keeps them, \
-                         and `maulstick take embed` embeds again what they are painted with"
-                    )))
-            }
         }
     }
 
@@ -122,6 +101,7 @@ mod tests {
     use maulstick_types::{HEADER_BYTES, Header};
 
     use super::*;
+    use crate::salvage::salvage;
 
     fn take() -> Take {
         let sample = |i: u64| TakeSample {

@@ -1,9 +1,9 @@
 //! Requests about the force of a device: carried out, answered, and logged with the name of who asked.
 
-use maulstick_bus::typed::Reader;
+use maulstick_bus::typed::{Reader, answer};
 use maulstick_bus::{Request, Server};
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
-use maulstick_types::{Flags, Origin, encode, plain};
+use maulstick_types::{Origin, plain};
 
 use super::Daemon;
 use super::force_settings::share_of;
@@ -52,7 +52,7 @@ struct OrderLog {
 }
 
 impl OrderLog {
-    /// What is to be said of a request that has changed something: of many shares in a row the first, one a second, and
+    /// Line of the log for a request that has changed something: of many shares in a row the first, one a second, and
     /// the last one.
     fn note(&mut self, request: ForceRequest, now_ns: u64) -> Option<ForceRequest> {
         let is_share = matches!(
@@ -77,9 +77,10 @@ impl OrderLog {
     /// A share that has waited for its line.
     fn due(&mut self, now_ns: u64) -> Option<ForceRequest> {
         let (said_ns, _) = self.shared.as_ref()?;
-        match now_ns >= said_ns + SHARES_PERIOD_NS {
-            true => self.unsaid.take(),
-            false => None,
+        if now_ns >= said_ns + SHARES_PERIOD_NS {
+            self.unsaid.take()
+        } else {
+            None
         }
     }
 }
@@ -116,7 +117,7 @@ impl Daemon {
                 },
                 guidance: control.guidance,
             };
-            answer(request, self.output.origin(), now_ns, &reply);
+            answer(request, &self.output.origin(), now_ns, &reply);
         }
         if let Some(said) = self.orders.log.due(now_ns) {
             log(self.connection.name(), &said);
@@ -145,17 +146,6 @@ impl Daemon {
         } else {
             Obeyed::Unchanged
         }
-    }
-}
-
-fn answer(request: Request, me: Origin, now_ns: u64, reply: &ForceReply) {
-    match encode(&me, Flags::NONE, 0, now_ns, now_ns, reply) {
-        Ok(bytes) => {
-            if let Err(error) = request.answer(bytes) {
-                tracing::debug!("a client is gone: {error}");
-            }
-        }
-        Err(error) => tracing::error!("an order cannot be answered: {error}"),
     }
 }
 

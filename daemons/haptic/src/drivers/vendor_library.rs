@@ -53,15 +53,16 @@ fn check(path: &Path) -> Result<(), UserError> {
     let is_allowed = allowed
         .iter()
         .any(|own| own == path || own.canonicalize().is_ok_and(|own| own == real));
-    match is_allowed || SYSTEM.iter().any(|folder| real.starts_with(folder)) {
-        true => Ok(()),
-        false => refused(
+    if is_allowed || SYSTEM.iter().any(|folder| real.starts_with(folder)) {
+        Ok(())
+    } else {
+        refused(
             "a library outside of the folders of the system is not loaded unasked",
             format!(
                 "if you trust it: `maulstick up --allow-library {}`; or install it below /usr/local/lib or /opt",
                 path.display()
             ),
-        ),
+        )
     }
 }
 
@@ -80,7 +81,7 @@ fn say_loading(product: &str, path: &Path) {
 pub struct VendorLibrary {
     /// The product that has it.
     pub product: &'static str,
-    /// What it is, for one that is another.
+    /// Its name, for one that is another.
     pub kind: &'static str,
     /// Names by which the system may have it.
     pub names: [&'static str; 3],
@@ -105,7 +106,7 @@ pub enum Unusable {
 }
 
 impl VendorLibrary {
-    /// What `open` makes of the library in the file `asked`, or of the first of its usual names where the system looks for
+    /// Result of `open` for the library in the file `asked`, or of the first of its usual names where the system looks for
     /// libraries.
     ///
     /// # Errors

@@ -85,9 +85,10 @@ impl ServoLoop {
     /// Runs a tick, `late_ns` after it was due. Breaks off when the device is lost, and, after a last
     /// tick without force, when the loop is to stop.
     pub fn tick(&mut self, late_ns: u64) -> ControlFlow<()> {
-        let flow = match self.channels.stop.load(Ordering::Relaxed) {
-            true => self.last_tick(),
-            false => self.step(late_ns),
+        let flow = if self.channels.stop.load(Ordering::Relaxed) {
+            self.last_tick()
+        } else {
+            self.step(late_ns)
         };
         flow.unwrap_or_else(|error| {
             self.error = Some(error);
@@ -113,9 +114,10 @@ impl ServoLoop {
         };
         self.read_ns = now_ns;
         self.servo.measure(reading.motor_temperature);
-        self.servo.permit(match reading.is_permitted {
-            true => Switch::On,
-            false => Switch::Off,
+        self.servo.permit(if reading.is_permitted {
+            Switch::On
+        } else {
+            Switch::Off
         });
         let (force, mut tick) = self.servo.step(&reading.handle, dt);
         self.device.write(force, tick.torque_n_m)?;
@@ -169,15 +171,16 @@ struct Seen {
 }
 
 impl Seen {
-    /// What is delivered, if it is new.
+    /// The delivery, if it is new.
     fn newest<M: Copy>(&mut self, delivery: &Delivery<M>) -> Option<(M, Sender)> {
         let model = delivery.model?;
         if delivery.number == self.number {
             return None;
         }
-        let sender = match delivery.sender == self.sender {
-            true => Sender::Same,
-            false => Sender::Another,
+        let sender = if delivery.sender == self.sender {
+            Sender::Same
+        } else {
+            Sender::Another
         };
         (self.number, self.sender) = (delivery.number, delivery.sender);
         Some((model, sender))

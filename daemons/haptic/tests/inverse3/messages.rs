@@ -224,7 +224,7 @@ fn a_permutation_says_which_of_haplys_axes_each_of_ours_is() {
     }
 }
 
-/// Whether all numbers are in their ranges.
+/// True if all numbers are in their ranges.
 fn is_sound(pose: &Pose) -> bool {
     let within = |vector: DVec3, most: f64| vector.to_array().iter().all(|x| x.abs() <= most);
     within(pose.position, FARTHEST_M)

@@ -8,7 +8,7 @@ use tungstenite::Message;
 use super::service::{Act, Service, inventory, state, update};
 use super::{fault, opened, reading, run_ticks, wait_for};
 
-/// What a device is lost by, in the end.
+/// Error by which a device is lost in the end.
 fn error_of(driver: &mut dyn Driver) -> DeviceError {
     wait_for(|| driver.read(1e-3).err()).expect("it is lost")
 }
@@ -89,7 +89,7 @@ fn a_listener_that_is_no_websocket_is_told_as_that() {
     thread.join().expect("it ends");
 }
 
-/// How a service acts, and what is told of it.
+/// Conduct of a service, and the words about it.
 type Case = (fn() -> Act, &'static str);
 
 /// A service that is as it should be for 50 messages, and then acts so.

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tungstenite::{Message, WebSocket};
 
-/// What the service does where a message has come.
+/// Reaction of the service to a message.
 pub(crate) enum Act {
     /// Answers by a state.
     Say(Value),
@@ -25,12 +25,12 @@ pub(crate) enum Act {
     Vanish,
 }
 
-/// What the service was sent.
+/// Messages that the service was sent.
 #[derive(Default)]
 pub(crate) struct Heard {
     /// Messages, oldest first.
     pub(crate) messages: Vec<Value>,
-    /// Whether the client has closed its side.
+    /// True once the client has closed its side.
     pub(crate) closed: bool,
     /// When the last message came.
     pub(crate) last: Option<Instant>,
@@ -169,7 +169,7 @@ fn perform(socket: &mut WebSocket<TcpStream>, act: &Act) -> std::ops::ControlFlo
     }
 }
 
-/// What a service of 3.5 says first: docs.haply.co, service/realtime/websocket-protocol.
+/// First message of a service of 3.5: docs.haply.co, service/realtime/websocket-protocol.
 pub(crate) fn inventory() -> Value {
     json!({
         "session_id": 7,
@@ -227,7 +227,7 @@ pub(crate) fn update(device: &str, state: Value) -> Value {
     })
 }
 
-/// What a service before 3.5 says first.
+/// First message of a service before 3.5.
 pub(crate) fn old_inventory() -> Value {
     json!({
         "inverse3": [{

@@ -1,4 +1,4 @@
-//! What the tests share: a section of `rig.toml`, a servo with a wall, the log, what is told.
+//! Shared by the tests: a section of `rig.toml`, a servo with a wall, the log.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -44,7 +44,7 @@ pub(crate) fn open(section: &DeviceSection) -> Result<Opened, UserError> {
     maulstick_haptic::device::open::open(&RigConfig::default(), &settings)
 }
 
-/// Why a device cannot be opened.
+/// Reason why a device cannot be opened.
 pub(crate) fn refusal(section: &DeviceSection) -> UserError {
     open(section).err().expect("a fault")
 }
@@ -121,7 +121,7 @@ pub(crate) fn calls(control: &Control) -> Vec<Call> {
     control.calls(0).expect("a log")
 }
 
-/// What is wrong with a log from opening to closing, if anything: its errors, frames that are not one
+/// Fault of a log from opening to closing, if any: its errors, frames that are not one
 /// a tick, a force at the end, another order of the end than the vendor asks for.
 pub(crate) fn disorder(calls: &[Call]) -> Option<String> {
     let (mut open, mut last_tick, mut force) = (false, 0, [0.0; 3]);
@@ -189,7 +189,7 @@ pub(crate) fn listen() {
     TOLD.lock().unwrap_or_else(PoisonError::into_inner).clear();
 }
 
-/// What was told since.
+/// Lines that were logged since.
 pub(crate) fn told() -> String {
     let told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
     String::from_utf8_lossy(&told).into_owned()

@@ -1,4 +1,4 @@
-//! How a device learns where it is.
+//! Calibration of a device.
 
 use glam::DVec3;
 use maulstick_haptic::servo::servo_thread::ServoThread;

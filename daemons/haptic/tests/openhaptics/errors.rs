@@ -1,4 +1,4 @@
-//! What goes wrong while it runs.
+//! Errors while it runs.
 
 use glam::DVec3;
 use maulstick_haptic::device::driver::DeviceError;
@@ -18,7 +18,7 @@ fn pressed() -> Script {
     }
 }
 
-/// Why a servo over a device has ended.
+/// Reason why a servo over a device has ended.
 fn end(mut servo: ServoThread) -> DeviceError {
     wait("the end", || {
         while servo.ticks.pop().is_ok() {}

@@ -306,9 +306,10 @@ fn changes(impulse_n_ms: f64, speed_limit_mm_s: f64, speed_mm_s: f64) -> (f64, f
         if let Some((ns, force)) = last.replace(now) {
             let change: f64 = record.force.z - force;
             fastest = fastest.max(change / ((record.monotonic_ns - ns) as f64 * 1e-9));
-            steady = match change == 0.0 && record.tick.contact && !record.tick.waiting {
-                true => steady + 1,
-                false => 0,
+            steady = if change == 0.0 && record.tick.contact && !record.tick.waiting {
+                steady + 1
+            } else {
+                0
             };
         }
         steady > 20

@@ -16,11 +16,11 @@ use super::firmware::{Firmware, Reads, Style};
 /// The servo's own: a tick without a reading for longer writes no force.
 const LONGEST_S: f64 = 0.005;
 
-/// What is on the bench.
+/// Devices on the bench.
 pub(crate) struct Bench {
     pub(crate) firmware: Firmware,
     pub(crate) now_s: f64,
-    /// How long an answer is on its way, s.
+    /// Delay of an answer, s.
     pub(crate) latency_s: f64,
     /// Bytes that a read gives at most.
     pub(crate) piece: usize,
@@ -32,9 +32,9 @@ pub(crate) struct Bench {
     pub(crate) losses: usize,
     /// Sent ahead of each answer.
     pub(crate) garbage: Vec<u8>,
-    /// What every call of the wire fails with.
+    /// Error of every call of the wire.
     pub(crate) broken: Option<Errno>,
-    /// What the host sent, call by call.
+    /// Bytes that the host sent, call by call.
     pub(crate) sent: Vec<Vec<u8>>,
     /// On its way to the host, with when it is there.
     coming: VecDeque<(f64, u8)>,

@@ -118,9 +118,10 @@ fn a_hand_that_shows_a_place_is_seen_to_press() {
     let mut is_seen = false;
     let probed = probe(opened(&cable), DVec3::ZERO, |reading| {
         is_seen |= matches!(reading, HandReading::Sample(seen) if seen.touch == Touch::Down);
-        match is_seen || Instant::now() > give_up {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+        if is_seen || Instant::now() > give_up {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
         }
     });
     assert_eq!((probed, is_seen), (Ok(()), true));

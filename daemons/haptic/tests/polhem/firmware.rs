@@ -1,7 +1,7 @@
 //! The firmware side of a WoodenHaptics or Polhem stylus, from what is known of it: what it answers,
 //! when its watchdog bites, when its amplifiers refuse. On whatever clock it is told.
 
-/// How a pose line ends.
+/// End of a pose line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Style {
     /// 63 bytes and one newline, November 2020.
@@ -68,11 +68,11 @@ impl Firmware {
 
     /// Force on the hand, N, in its own axes.
     pub(crate) fn force(&self) -> [f64; 3] {
-        match self.enabled {
-            true => self
-                .currents
-                .map(|current| f64::from(current) / MILLIAMPS_PER_NEWTON),
-            false => [0.0; 3],
+        if self.enabled {
+            self.currents
+                .map(|current| f64::from(current) / MILLIAMPS_PER_NEWTON)
+        } else {
+            [0.0; 3]
         }
     }
 
@@ -142,7 +142,7 @@ impl Firmware {
         self.fed_s = now_s;
     }
 
-    /// What it answers now.
+    /// Its next answer.
     pub(crate) fn answer(&self) -> Vec<u8> {
         let mut line = if self.tells_poses {
             let [x, y, z, a, l, d, e] = self.pose;

@@ -75,7 +75,7 @@ fn a_line_that_does_not_end_is_dropped_as_a_whole() {
     assert_eq!(Some(heard[1]), read(POSE));
 }
 
-/// Whether an answer's numbers are in their ranges.
+/// True if an answer's numbers are in their ranges.
 fn is_sound(heard: &ParsedLine) -> bool {
     match heard {
         ParsedLine::Answer(Answer::Pose(pose)) => {

@@ -214,9 +214,10 @@ fn reading_and_writing_a_terminal_allocate_nothing() {
                     .ok();
             }
         });
-        match came {
-            true => (ticks, last) = (ticks + 1, Instant::now()),
-            false => nothing += 1,
+        if came {
+            (ticks, last) = (ticks + 1, Instant::now())
+        } else {
+            nothing += 1
         }
         std::thread::yield_now();
     }

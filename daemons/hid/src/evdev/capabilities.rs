@@ -89,3 +89,15 @@ impl Capabilities {
         })
     }
 }
+
+/// The numbers of the bits that are set: hexadecimal words of 64 bits, the highest first.
+pub(super) fn bits(text: &str) -> Vec<u16> {
+    let words = text.split_whitespace().rev().enumerate();
+    let of = |(place, word): (usize, &str)| {
+        let word = u64::from_str_radix(word, 16).unwrap_or(0);
+        let set = (0..64_u16).filter(move |bit| word >> bit & 1 == 1);
+        let first = u16::try_from(64 * place).unwrap_or(u16::MAX);
+        set.map(move |bit| first.saturating_add(bit))
+    };
+    words.flat_map(of).collect()
+}

@@ -50,7 +50,7 @@ pub fn parse(text: &str) -> Result<Recorded, RecordingError> {
     Ok(recorded)
 }
 
-/// What was read so far.
+/// Text that was read so far.
 #[derive(Debug, Default)]
 struct Reader {
     recorded: Recorded,

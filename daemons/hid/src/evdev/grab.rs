@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use evdev::raw_stream::RawDevice;
 use maulstick_rig::UserError;
 
-use super::ports::bits;
+use super::capabilities::bits;
 
 /// Keys of a device that moves the pointer: the tools of a pen, and a mouse's first button.
 const POINTERS: [u16; 6] = [0x110, 0x140, 0x141, 0x142, 0x143, 0x144];

@@ -11,7 +11,7 @@ use maulstick_rig::UserError;
 use nix::errno::Errno;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 
-use super::capabilities::{Axis, Capabilities};
+use super::capabilities::{Axis, Capabilities, bits};
 use super::frame::{self, kind};
 use super::pen::EvdevPen;
 use crate::device_source::{Found, HidSource, Identity, Ports};
@@ -20,7 +20,7 @@ use crate::hidraw::closed;
 /// Events of the type SYN: the end of a frame, and the loss of events.
 const SYN_REPORT: u16 = 0;
 const SYN_DROPPED: u16 = 3;
-/// What a pen is called among the collections of HID: digitizer, pen.
+/// Usage of a pen among the collections of HID: digitizer, pen.
 const PEN: (u16, u16) = (0x0D, 0x02);
 
 /// Event devices below what stands for /sys and /dev.
@@ -56,7 +56,7 @@ impl EventDevices {
         let number = |file: &str| u16::from_str_radix(&text(file)?, 16).ok();
         let keys = bits(&text("capabilities/key").unwrap_or_default());
         let axes = bits(&text("capabilities/abs").unwrap_or_default());
-        // How far its axes go is told only to those who may open it.
+        // The ranges of its axes are known only to those who may open it.
         let seems = Capabilities {
             axes: axes.into_iter().map(movable).collect(),
             keys,
@@ -81,18 +81,6 @@ fn movable(code: u16) -> Axis {
         range: [0, 1],
         resolution: 0,
     }
-}
-
-/// The numbers of the bits that are set: hexadecimal words of 64 bits, the highest first.
-pub(super) fn bits(text: &str) -> Vec<u16> {
-    let words = text.split_whitespace().rev().enumerate();
-    let of = |(place, word): (usize, &str)| {
-        let word = u64::from_str_radix(word, 16).unwrap_or(0);
-        let set = (0..64_u16).filter(move |bit| word >> bit & 1 == 1);
-        let first = u16::try_from(64 * place).unwrap_or(u16::MAX);
-        set.map(move |bit| first.saturating_add(bit))
-    };
-    words.flat_map(of).collect()
 }
 
 impl Ports for EventDevices {
@@ -133,7 +121,7 @@ struct EventSource {
     device: RawDevice,
     capabilities: Vec<u8>,
     name: String,
-    /// What has come and is not read, one time after the other, and what came of the newest.
+    /// Frames that have come and are not read, in order of time, and the events of the newest.
     frames: VecDeque<Vec<u8>>,
     begun: Vec<u8>,
     /// Events were lost: what comes until the next end of a frame is of no use.

@@ -59,7 +59,7 @@ pub enum DescriptorError {
     /// An item that no descriptor has there.
     #[error("{defect} at byte {at}")]
     Item {
-        /// What is wrong with it.
+        /// Its fault.
         defect: Defect,
         /// Its place.
         at: usize,
@@ -67,12 +67,12 @@ pub enum DescriptorError {
     /// No report.
     #[error("it says nothing of a report")]
     Empty,
-    /// What `hidreport` refuses.
+    /// Refusal of `hidreport`.
     #[error(transparent)]
     Parser(#[from] ParserError),
 }
 
-/// What is wrong with an item of a descriptor.
+/// Fault of an item of a descriptor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Defect {
     /// The bytes end within it.

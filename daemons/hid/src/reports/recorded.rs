@@ -31,11 +31,11 @@ pub struct Recorded {
 pub struct RecordingError {
     /// Number of the line, from 1.
     pub line: usize,
-    /// What is wrong with it.
+    /// Its fault.
     pub fault: LineFault,
 }
 
-/// What is wrong with a line of a recording.
+/// Fault of a line of a recording.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LineFault {
     /// No colon.

@@ -7,6 +7,7 @@ use std::thread::JoinHandle;
 
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, check_writable, write_whole};
+use maulstick_rig::thread::start;
 
 use crate::device_source::Identity;
 use crate::recording::{Event, Recorded};
@@ -40,14 +41,10 @@ impl Recorder {
                 lines.try_for_each(|line| file.write_all(line.as_bytes()))
             })
         };
-        let thread = std::thread::Builder::new()
-            .name("recorder".into())
-            .spawn(write)
-            .map_err(|error| UserError::failure(format!("the recording has no thread: {error}")))?;
         Ok(Self {
             path: path.to_owned(),
             lines: Some(lines),
-            thread: Some(thread),
+            thread: Some(start("recorder", write)?),
             devices: Vec::new(),
             start_ns: None,
             lost: 0,

@@ -11,6 +11,7 @@ use std::time::Duration;
 
 use maulstick_bus::{Bus, Inbox, Queue, Wake};
 use maulstick_rig::UserError;
+use maulstick_rig::thread::start;
 
 use crate::device_source::HidSource;
 use crate::recording::{Event, LONGEST_REPORT};
@@ -100,14 +101,10 @@ impl Live {
                 }
             }
         };
-        let thread = std::thread::Builder::new()
-            .name("hid".into())
-            .spawn(run)
-            .map_err(|error| UserError::failure(format!("the device has no thread: {error}")))?;
         Ok(Self {
             inbox,
             stop,
-            thread: Some(thread),
+            thread: Some(start("hid", run)?),
         })
     }
 

@@ -108,7 +108,7 @@ impl Rig {
         self.infos.newest().map(|received| received.message)
     }
 
-    /// Why there is no device, and what to do, of the newest status.
+    /// Reason in the newest status why there is no device, with advice.
     pub(crate) fn trouble(&mut self) -> String {
         let status = self.status().expect("told");
         let trouble = status.trouble();

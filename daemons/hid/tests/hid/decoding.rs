@@ -26,7 +26,7 @@ fn layout(descriptor: &Descriptor) -> Layout {
     Layout::of(&read).expect("a pen")
 }
 
-/// What a report must be read as, from the values that were packed, by the words of the specification.
+/// Expected reading of a report, from the values that were packed, by the words of the specification.
 struct Wanted {
     presence: Presence,
     end: End,

@@ -69,8 +69,8 @@ pub(crate) fn near(got: f64, wanted: f64) {
 }
 
 #[test]
-fn a_pen_hovers_touches_leans_and_leaves() {
-    let mut pen = EvdevPen::of(&intuos()).expect("a pen");
+fn a_pen_has_an_area_and_senses() {
+    let pen = EvdevPen::of(&intuos()).expect("a pen");
     near(pen.area_m()[0], 0.224);
     near(pen.area_m()[1], 0.148);
     assert_eq!(
@@ -82,6 +82,11 @@ fn a_pen_hovers_touches_leans_and_leaves() {
             | axes::TWIST
             | axes::SWITCHES
     );
+}
+
+#[test]
+fn a_pen_hovers_touches_leans_and_leaves() {
+    let mut pen = EvdevPen::of(&intuos()).expect("a pen");
     let hovers = read(
         &mut pen,
         &[

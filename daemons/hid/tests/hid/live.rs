@@ -14,7 +14,7 @@ use maulstick_types::stylus::StylusSample;
 use crate::daemon::{Rig, settings, stroke_report};
 use crate::support::{DESKTOP, DIGITIZER, Descriptor, deco_l, identity, pointer, spacemouse};
 
-/// What a made-up device does next.
+/// Next step of a made-up device.
 #[derive(Clone, Debug)]
 enum Deed {
     Report(Vec<u8>),
@@ -34,7 +34,7 @@ struct Desk {
 #[derive(Clone, Default)]
 struct Plugs {
     desk: Arc<Mutex<Desk>>,
-    /// What stands for /dev.
+    /// Folder in the place of /dev.
     dev: Option<PathBuf>,
 }
 
@@ -264,30 +264,32 @@ fn a_node_that_appears_is_opened_once_udev_is_done_with_it() {
     assert_eq!(rig.trouble(), "");
 }
 
+/// A mouse, a device that is a pen by name alone, two tablets and a 6-DOF mouse.
+fn desk() -> Plugs {
+    let plugs = Plugs::default();
+    let at = |vendor, product, place: &str| Identity {
+        place: place.into(),
+        ..identity(vendor, product, "Thing")
+    };
+    plugs.plug(
+        at(0x1, 0x1, "/dev/hidraw0"),
+        &pointer(DESKTOP, 0x02),
+        (DESKTOP, 0x02),
+    );
+    // Calls itself a pen, and describes none.
+    plugs.plug(at(0x2, 0x2, "/dev/hidraw1"), &pointer(DIGITIZER, 0x05), PEN);
+    plugs.plug(at(0x28BD, 0x0935, "/dev/hidraw2"), &deco_l(), PEN);
+    plugs.plug(at(0x28BD, 0x0935, "/dev/hidraw3"), &deco_l(), PEN);
+    plugs.plug(
+        at(0x256F, 0xC635, "/dev/hidraw4"),
+        &spacemouse(),
+        (DESKTOP, 0x08),
+    );
+    plugs
+}
+
 #[test]
 fn of_several_devices_the_first_that_suits_or_the_one_that_is_named_is_opened() {
-    let desk = || {
-        let plugs = Plugs::default();
-        let at = |vendor, product, place: &str| Identity {
-            place: place.into(),
-            ..identity(vendor, product, "Thing")
-        };
-        plugs.plug(
-            at(0x1, 0x1, "/dev/hidraw0"),
-            &pointer(DESKTOP, 0x02),
-            (DESKTOP, 0x02),
-        );
-        // Calls itself a pen, and describes none.
-        plugs.plug(at(0x2, 0x2, "/dev/hidraw1"), &pointer(DIGITIZER, 0x05), PEN);
-        plugs.plug(at(0x28BD, 0x0935, "/dev/hidraw2"), &deco_l(), PEN);
-        plugs.plug(at(0x28BD, 0x0935, "/dev/hidraw3"), &deco_l(), PEN);
-        plugs.plug(
-            at(0x256F, 0xC635, "/dev/hidraw4"),
-            &spacemouse(),
-            (DESKTOP, 0x08),
-        );
-        plugs
-    };
     for (driver, address, opened, trouble) in [
         ("pen", None, vec!["/dev/hidraw1", "/dev/hidraw2"], ""),
         ("pen", Some("/dev/hidraw3"), vec!["/dev/hidraw3"], ""),
@@ -334,6 +336,10 @@ fn of_several_devices_the_first_that_suits_or_the_one_that_is_named_is_opened() 
             "{told}"
         );
     }
+}
+
+#[test]
+fn an_address_that_is_none_is_refused() {
     let mut wrong = settings("pen");
     wrong.device.address = Some("tablet".into());
     let fault = Rig::new(&wrong, Box::new(desk()))

@@ -3,7 +3,6 @@
 
 #![allow(clippy::panic, reason = "a test that meets what cannot be fails")]
 
-mod cases;
 mod daemon;
 mod decoding;
 mod descriptors;

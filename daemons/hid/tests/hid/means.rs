@@ -1,4 +1,4 @@
-//! How a device is read, and what one is called that cannot be.
+//! Means by which a device is read, and names of those that cannot be.
 
 use std::f64::consts::PI;
 

@@ -14,7 +14,7 @@ use maulstick_rig::config::DeviceSection;
 use crate::daemon::{stroke_report, write};
 use crate::support::{DIGITIZER, deco_l, identity};
 
-/// Whether a tablet senses its pen before and after it touches.
+/// Range in which a tablet senses its pen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Senses {
     Hover,

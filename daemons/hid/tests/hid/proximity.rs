@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use Presence::{Away, Hovering, Touching};
 
-/// Whether a pen may go from one state to the other.
+/// True if a pen may go from one state to the other.
 fn may(from: &Reading, to: &Reading) -> bool {
     let same_end = from.end == to.end;
     match (from.presence, to.presence) {

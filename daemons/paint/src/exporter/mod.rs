@@ -271,9 +271,10 @@ fn write(
     });
     let name = path.display();
     match (written, made) {
-        (Ok(()), Ok(said)) => Outcome::done(match said.is_empty() {
-            true => name.to_string(),
-            false => format!("{name}: {said}"),
+        (Ok(()), Ok(said)) => Outcome::done(if said.is_empty() {
+            name.to_string()
+        } else {
+            format!("{name}: {said}")
         }),
         _ if stop.load(SeqCst) => Outcome::refused(
             format!("the export of {name} was stopped"),

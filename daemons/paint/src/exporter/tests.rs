@@ -29,16 +29,19 @@ fn wait(exporter: &mut Exporter) -> Outcome {
     }
 }
 
+fn whole(folder: &tempfile::TempDir, name: &str) -> WholePath {
+    WholePath::new(folder.path().join(name).display().to_string()).expect("whole")
+}
+
+fn begin(exporter: &mut Exporter, order: &ExportOrder) -> Result<(), Refusal> {
+    exporter.begin((1, 2), order, painting([96, 64]), &Export::default(), 0)
+}
+
 #[test]
-fn every_format_is_written_and_what_is_none_is_refused_with_the_list() {
+fn every_format_is_written() {
     let folder = tempfile::tempdir().expect("a folder");
-    let at =
-        |name: &str| WholePath::new(folder.path().join(name).display().to_string()).expect("whole");
+    let at = |name: &str| whole(&folder, name);
     let mut exporter = Exporter::default();
-    let usual = Export::default();
-    let begin = |exporter: &mut Exporter, order: &ExportOrder| {
-        exporter.begin((1, 2), order, painting([96, 64]), &usual, 0)
-    };
     let heads: [(&str, &str, &[u8]); 5] = [
         ("a.png", "", b"\x89PNG"),
         ("a.exr", "", &[0x76, 0x2f, 0x31, 0x01]),
@@ -61,6 +64,13 @@ fn every_format_is_written_and_what_is_none_is_refused_with_the_list() {
             &bytes[..9]
         );
     }
+}
+
+#[test]
+fn an_order_that_cannot_be_carried_out_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| whole(&folder, name);
+    let mut exporter = Exporter::default();
     let refused = |order: ExportOrder, words: [&str; 2]| {
         let mut exporter = Exporter::default();
         let said = match begin(&mut exporter, &order) {

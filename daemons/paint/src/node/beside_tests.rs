@@ -1,4 +1,4 @@
-//! What goes on beside the painting: exports, another file, small pictures.
+//! Work beside the painting: exports, another file, small pictures.
 
 #![allow(clippy::panic, reason = "a test fails by it")]
 

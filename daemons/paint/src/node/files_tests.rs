@@ -1,4 +1,4 @@
-//! What a client may have written where, beside an open painting.
+//! Files that a client may have written beside an open painting.
 
 #![allow(clippy::panic, reason = "a test fails by it")]
 
@@ -29,7 +29,7 @@ fn export(path: &Path) -> Command {
     Command::from(FileCommand::Export(order))
 }
 
-/// Whether this process holds locks of a file, as the kernel lists them.
+/// True if this process holds locks of a file, as the kernel lists them.
 fn is_locked(path: &Path) -> bool {
     let inode = format!(":{}", std::fs::metadata(path).expect("there").ino());
     let locks = std::fs::read_to_string("/proc/locks").expect("Linux");

@@ -1,4 +1,4 @@
-//! What the node hands to the frames and to its clients.
+//! Output of the node to the frames and to its clients.
 
 use std::collections::BTreeSet;
 
@@ -115,34 +115,42 @@ fn the_frames_know_a_paint_as_soon_as_a_tile_has_it() {
     assert!(shown.count() > 0, "nothing was painted");
 }
 
-#[test]
-fn paint_dries_by_the_clock_of_the_node_and_each_tick_is_in_the_journal() {
-    let net = MemoryNet::new(1, 1_000_000_000, Faults::default());
-    let (mut node, _) = node(&net);
-    let ask = |node: &mut PaintNode, number: u64, command: Command| {
-        let request = CommandRequest {
-            client: 1,
-            number,
-            after: None,
-            command,
-        };
-        let outcome = node.sequencer.command(request).outcome;
-        assert!(matches!(outcome, Outcome::Done { .. }), "{outcome:?}");
+/// Has the node carry out a command.
+fn ask(node: &mut PaintNode, number: u64, command: Command) {
+    let request = CommandRequest {
+        client: 1,
+        number,
+        after: None,
+        command,
     };
-    let fill = Command::from(Fill {
+    let outcome = node.sequencer.command(request).outcome;
+    assert!(matches!(outcome, Outcome::Done { .. }), "{outcome:?}");
+}
+
+/// Command that fills the canvas.
+fn fill() -> Command {
+    Command::from(Fill {
         paint: FillPaint::Mixture {
             mixture: Mixture::pure("Bone Black"),
         },
         thickness: FilmThickness::new(3e-5).expect("in range"),
         surface: CANVAS,
-    });
-    let over = |ticks: u32| {
-        Command::from(Dry {
-            over: Some(Ticks::new(ticks).expect("in range")),
-            ..Dry::whole(CANVAS)
-        })
-    };
-    ask(&mut node, 1, fill.clone());
+    })
+}
+
+/// Command that dries the canvas in this time.
+fn over(ticks: u32) -> Command {
+    Command::from(Dry {
+        over: Some(Ticks::new(ticks).expect("in range")),
+        ..Dry::whole(CANVAS)
+    })
+}
+
+#[test]
+fn paint_dries_by_the_clock_of_the_node_and_each_tick_is_in_the_journal() {
+    let net = MemoryNet::new(1, 1_000_000_000, Faults::default());
+    let (mut node, _) = node(&net);
+    ask(&mut node, 1, fill());
     net.advance(5_000_000_000);
     node.poll().expect("a turn");
     assert_eq!(node.sequencer.painting().clock().ticks, 0, "nothing dries");
@@ -167,10 +175,15 @@ fn paint_dries_by_the_clock_of_the_node_and_each_tick_is_in_the_journal() {
     assert!(!painting.is_drying());
     let store = painting.store(CANVAS).expect("a canvas");
     assert_eq!(store.counts(), [0; SLOTS]);
-    // A node that stood still catches up bit by bit.
-    let before = painting.clock().ticks;
-    ask(&mut node, 3, fill);
-    ask(&mut node, 4, over(3600));
+}
+
+#[test]
+fn a_node_that_stood_still_catches_up_bit_by_bit() {
+    let net = MemoryNet::new(1, 1_000_000_000, Faults::default());
+    let (mut node, _) = node(&net);
+    let before = node.sequencer.painting().clock().ticks;
+    ask(&mut node, 1, fill());
+    ask(&mut node, 2, over(3600));
     node.poll().expect("a turn");
     net.advance(4_000_000_000);
     node.poll().expect("a turn");

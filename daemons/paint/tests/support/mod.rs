@@ -353,7 +353,7 @@ impl Device {
         self.samples.serve(now_ns).expect("served");
     }
 
-    /// How many of its samples the brush has consumed.
+    /// Number of its samples that the brush has consumed.
     pub fn consumed(&mut self) -> u64 {
         let me = self.samples.origin();
         std::iter::from_fn(|| self.credit.try_recv())

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use maulstick_rig::UserError;
+use crate::error::RecorderError;
 
 /// Event of a recording.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,12 +40,12 @@ pub enum Continuation {
 }
 
 /// Reason why the painting is not in a recording.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum CopyTrouble {
     /// It is in memory only.
     InMemory,
     /// The paint node refused the copy, or it could not be written.
-    Failed(UserError),
+    Failed(RecorderError),
 }
 
 /// Contents of a file that has ended.

@@ -37,7 +37,7 @@ struct States {
     painted: u64,
 }
 
-/// What is known of the journal.
+/// Known part of the journal.
 #[derive(Debug, Default)]
 pub(super) struct JournalWatch {
     /// Epoch of the paint node.
@@ -48,7 +48,7 @@ pub(super) struct JournalWatch {
 }
 
 impl JournalWatch {
-    /// Takes in a message: the break before it, if there is one.
+    /// Adds a message: the break before it, if there is one.
     pub(super) fn note(&mut self, received: &ReceivedMessage) -> Option<Break> {
         let header = &received.message.header;
         let topic = received.topic.as_str();
@@ -119,7 +119,7 @@ impl JournalWatch {
         (is_missing || lacks_states).then_some(Break::Gap)
     }
 
-    /// Takes in that an entry names states; true where some of them are known to be missing.
+    /// Adds that an entry names states; true where some of them are known to be missing.
     fn names(&mut self, brush: Brush, [from, to]: [u64; 2]) -> bool {
         let Some(states) = self.brushes.get_mut(&brush).filter(|_| from <= to) else {
             return false;

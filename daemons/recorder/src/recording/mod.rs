@@ -8,9 +8,11 @@
 //! | [`event`] | what happens to a recording |
 //! | [`ring`] | the files of a recording, and those that go for newer ones |
 //! | [`part`] | one file |
+//! | [`cut_off`] | recordings whose recorder was killed |
 //! | [`painting_copy`], [`on_the_way`] | the painting as it is at the beginning of a file |
 //! | [`journal_watch`] | where the journal breaks off, and another file begins |
 
+pub(crate) mod cut_off;
 pub(crate) mod event;
 mod journal_watch;
 mod on_the_way;

@@ -15,7 +15,7 @@ pub(super) const CREDIT: &str = "paint/consumed";
 /// A brush: the source and the epoch of its states.
 pub(super) type Brush = (u32, u32);
 
-/// What is known of them.
+/// Known states of each brush.
 #[derive(Debug, Default)]
 pub(super) struct OnTheWay {
     /// Number of the first state of each brush in the file.
@@ -24,7 +24,7 @@ pub(super) struct OnTheWay {
     painted: BTreeMap<Brush, u64>,
 }
 
-/// Whether the states before the file are painted.
+/// Progress of the states before the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Painted {
     /// Not yet.
@@ -36,7 +36,7 @@ pub(super) enum Painted {
 }
 
 impl OnTheWay {
-    /// What is known at the beginning of a file: brushes of whose states some were not painted then, with the number of the
+    /// State at the beginning of a file: brushes of whose states some were not painted then, with the number of the
     /// next one.
     pub(super) fn after(unpainted: BTreeMap<Brush, u64>) -> Self {
         Self {
@@ -45,7 +45,7 @@ impl OnTheWay {
         }
     }
 
-    /// Takes in a message of the file.
+    /// Adds a message of the file.
     pub(super) fn note(&mut self, received: &ReceivedMessage) {
         let header = &received.message.header;
         if matches(STATES, &received.topic) {
@@ -63,7 +63,7 @@ impl OnTheWay {
         self.first.entry(brush).or_insert(number);
     }
 
-    /// Whether all before the file is painted.
+    /// Progress of all that was sent before the file.
     pub(super) fn painted(&self) -> Painted {
         let mut states = self.first.iter();
         let lacks = |(brush, first): (&Brush, &u64)| {

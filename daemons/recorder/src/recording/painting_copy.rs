@@ -17,6 +17,7 @@ use tokio::time::Instant;
 
 use super::event::CopyTrouble;
 use super::on_the_way::{Brush, OnTheWay, Painted};
+use crate::error::RecorderError;
 use crate::listener::ReceivedMessage;
 use crate::paintings::{open_begin, wrong};
 use crate::session_file::PAINTING;
@@ -34,7 +35,7 @@ const PATIENCE: Duration = Duration::from_secs(3600);
 const STATUS: &str = "paint/status";
 
 /// Task that makes a copy: the painting's file.
-type Copying = JoinHandle<Result<Vec<u8>, UserError>>;
+type Copying = JoinHandle<Result<Vec<u8>, RecorderError>>;
 
 /// A copy of the painting, made beside the recording.
 #[derive(Debug)]
@@ -69,7 +70,7 @@ impl PaintingCopy {
         }
     }
 
-    /// Takes in a message of the file; returned is a trouble that was not said yet.
+    /// Adds a message of the file; returned is a trouble that was not said yet.
     pub(super) fn note(&mut self, received: &ReceivedMessage) -> Option<CopyTrouble> {
         if self.copying.is_none() {
             self.on_the_way.note(received);
@@ -85,7 +86,7 @@ impl PaintingCopy {
         }
     }
 
-    /// Takes in that it was refused; returned is the trouble where none was said yet.
+    /// Notes a refusal; returns the trouble where none was reported yet.
     pub(super) fn refused(&mut self, trouble: CopyTrouble) -> Option<CopyTrouble> {
         self.at = Instant::now() + AGAIN;
         self.is_refused = true;
@@ -118,7 +119,7 @@ impl PaintingCopy {
     }
 
     /// Waits for the end of the copy that is being made: for ever where none is. Dropped before that, it loses nothing.
-    pub(super) async fn made(copy: &mut Option<Self>) -> Result<Vec<u8>, UserError> {
+    pub(super) async fn made(copy: &mut Option<Self>) -> Result<Vec<u8>, RecorderError> {
         let Some(own) = copy else {
             return pending().await;
         };
@@ -127,7 +128,7 @@ impl PaintingCopy {
         };
         let made = copying.await;
         own.copying = None;
-        made.unwrap_or_else(|_| Err(UserError::failure("internal error: the copy panicked")))
+        made.unwrap_or(Err(RecorderError::Panicked("the copy")))
     }
 
     /// True while it is being made.
@@ -137,7 +138,7 @@ impl PaintingCopy {
 }
 
 /// A copy of the painting as it is now, without the record of what was painted before.
-fn copy(mut client: CommandClient, rig: &Path) -> Result<Vec<u8>, UserError> {
+fn copy(mut client: CommandClient, rig: &Path) -> Result<Vec<u8>, RecorderError> {
     let failed = |error: std::io::Error| UserError::failure(error.to_string());
     let folder = tempfile::tempdir().map_err(failed)?;
     let copy = folder.path().join(PAINTING);
@@ -150,7 +151,7 @@ fn copy(mut client: CommandClient, rig: &Path) -> Result<Vec<u8>, UserError> {
     document.write_checkpoint(Checkpoint::of(&mut sequencer, since));
     document.close().map_err(|error| wrong(&copy, &error))?;
     record::discard(&copy).map_err(|error| wrong(&copy, &error))?;
-    std::fs::read(&copy).map_err(|error| UserError::reading(&copy, &error))
+    Ok(std::fs::read(&copy).map_err(|error| UserError::reading(&copy, &error))?)
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ use maulstick_streams::{RateLimit, RecordingWriter};
 use maulstick_types::HEADER_BYTES;
 use mcap::{McapError, McapResult};
 
+use crate::error::RecorderError;
 use crate::listener::{Listener, ReceivedMessage};
 use crate::session_file::{NEXT, PAINTING};
 
@@ -38,10 +39,10 @@ impl Part {
         create: fn(&Path) -> std::io::Result<File>,
         listener: &Listener,
         json_hz: u32,
-    ) -> Result<Self, UserError> {
+    ) -> Result<Self, RecorderError> {
         let writing = |error: std::io::Error| UserError::writing(path, &error);
         let file = create(path).map_err(writing)?;
-        // Other recorders are told of it; where a file system has no locks they are not.
+        // Other recorders respect the lock; some file systems have none.
         file.try_lock().ok();
         let member = &listener.member;
         let settings = std::fs::read(member.folder.join(CONFIG_FILE)).unwrap_or_default();
@@ -79,7 +80,7 @@ impl Part {
         })
     }
 
-    pub(super) fn write(&mut self, received: &ReceivedMessage) -> Result<(), UserError> {
+    pub(super) fn write(&mut self, received: &ReceivedMessage) -> Result<(), RecorderError> {
         self.write_as_sent(received)
             .and_then(|()| self.write_as_json(received))
             .map_err(|error| fault(&self.path, error))?;
@@ -120,7 +121,7 @@ impl Part {
     }
 
     /// Attaches the painting as it was at the beginning.
-    pub(super) fn attach(&mut self, painting: &[u8]) -> Result<(), UserError> {
+    pub(super) fn attach(&mut self, painting: &[u8]) -> Result<(), RecorderError> {
         self.writer
             .attach(PAINTING, "application/vnd.sqlite3", painting)
             .map_err(|error| fault(&self.path, error))?;
@@ -133,7 +134,7 @@ impl Part {
         self.has_painting
     }
 
-    pub(super) fn flush(&mut self) -> Result<(), UserError> {
+    pub(super) fn flush(&mut self) -> Result<(), RecorderError> {
         self.writer
             .flush()
             .map_err(|error| fault(&self.path, error))
@@ -160,7 +161,7 @@ impl Part {
         &mut self,
         missing: [u64; 3],
         next: Option<&Path>,
-    ) -> Result<u64, UserError> {
+    ) -> Result<u64, RecorderError> {
         let [lost, dropped, foreign] = missing;
         let counts = [
             ("messages", self.messages),
@@ -183,11 +184,11 @@ impl Part {
     }
 }
 
-/// Why a file could not be written.
-fn fault(path: &Path, error: McapError) -> UserError {
+/// Error of a file that cannot be written.
+fn fault(path: &Path, error: McapError) -> RecorderError {
     let error = match error {
         McapError::Io(error) => error,
         other => std::io::Error::other(other),
     };
-    UserError::writing(path, &error)
+    UserError::writing(path, &error).into()
 }

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use maulstick_rig::UserError;
 use maulstick_rig::pulse::Pulse;
 use tokio::runtime::Handle;
 use tokio::sync::Notify;
@@ -12,13 +11,14 @@ use super::event::RecorderEvent;
 use super::ring::Ring;
 use super::settings::RecorderSettings;
 use super::task::Recording;
+use crate::error::RecorderError;
 use crate::listener::Listener;
 use crate::work::{StopRequest, Work};
 
 /// A recorder at work. Dropped, it is asked to stop, and nobody waits for the end of its file.
 #[derive(Debug)]
 pub struct Recorder {
-    /// What happens to the recording.
+    /// Events of the recording.
     pub events: UnboundedReceiver<RecorderEvent>,
     work: Work,
     /// Ends the wait for a copy of the painting.
@@ -46,7 +46,7 @@ impl Recorder {
         }
     }
 
-    /// Records as a member of a rig, whose stop flag stops it; `pulse` tells the launcher that it goes on.
+    /// Records as a member of a rig, whose stop flag stops it; `pulse` reports progress to the launcher.
     #[must_use]
     pub fn over(
         runtime: &Handle,
@@ -83,15 +83,15 @@ impl Recorder {
     }
 
     /// Its result, once it has ended; then its last events are there too. `None` afterwards.
-    pub fn result(&mut self) -> Option<Result<(), UserError>> {
+    pub fn result(&mut self) -> Option<Result<(), RecorderError>> {
         self.work.result()
     }
 
     /// Waits for its end.
     ///
     /// # Errors
-    /// A [`UserError`] where no rig runs, or a file cannot be written: what was written until then can be read.
-    pub async fn ended(self) -> Result<(), UserError> {
+    /// A [`RecorderError`] where no rig runs, or a file cannot be written: what was written until then can be read.
+    pub async fn ended(self) -> Result<(), RecorderError> {
         self.work.await
     }
 }

@@ -9,11 +9,12 @@ use maulstick_rig::UserError;
 use maulstick_rig::files::{create_private, first_free, open_private};
 
 use super::settings::{Division, FILES};
+use crate::error::RecorderError;
 
 /// Form of the name of a recording that the rig keeps, behind the name of the rig.
 const DATED: &str = "%Y-%m-%d %H.%M.%S";
 /// File ending of a recording.
-const ENDING: &str = "mcap";
+pub(super) const ENDING: &str = "mcap";
 
 /// The files of a recording, the oldest first.
 #[derive(Debug)]
@@ -50,13 +51,13 @@ impl Ring {
     /// A recording of `rig` in a folder, named by the time, whose quota is that of all such recordings there.
     ///
     /// # Errors
-    /// A [`UserError`] where the folder cannot be read.
+    /// A [`RecorderError`] where the folder cannot be read.
     pub fn dated(
         folder: &Path,
         rig: &str,
         now: &jiff::Zoned,
         division: Division,
-    ) -> Result<Self, UserError> {
+    ) -> Result<Self, RecorderError> {
         let reading = |error: std::io::Error| UserError::reading(folder, &error);
         let mut earlier: Vec<(String, PathBuf)> = Vec::new();
         for entry in std::fs::read_dir(folder).map_err(reading)? {
@@ -96,8 +97,8 @@ impl Ring {
     /// Removes the oldest files that are too many, but neither the one that is written nor the newest whole one.
     ///
     /// # Errors
-    /// A [`UserError`] where one cannot be removed.
-    pub(super) fn trim(&mut self) -> Result<(), UserError> {
+    /// A [`RecorderError`] where one cannot be removed.
+    pub(super) fn trim(&mut self) -> Result<(), RecorderError> {
         while !self.earlier.is_empty()
             && self.earlier.len() + self.kept.len() > 2
             && self.are_large()
@@ -136,9 +137,11 @@ fn begin_anew(path: &Path) -> std::io::Result<File> {
 }
 
 /// Removes a file; one that is gone already is no fault.
-fn remove(path: &Path) -> Result<(), UserError> {
+fn remove(path: &Path) -> Result<(), RecorderError> {
     match std::fs::remove_file(path) {
-        Err(error) if error.kind() != ErrorKind::NotFound => Err(UserError::writing(path, &error)),
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            Err(UserError::writing(path, &error).into())
+        }
         _ => Ok(()),
     }
 }

@@ -6,7 +6,6 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-use maulstick_rig::UserError;
 use maulstick_rig::files::create_private;
 use maulstick_rig::pulse::Pulse;
 use maulstick_streams::Traffic;
@@ -22,12 +21,13 @@ use super::painting_copy::PaintingCopy;
 use super::part::Part;
 use super::ring::Ring;
 use super::settings::RecorderSettings;
+use crate::error::RecorderError;
 use crate::listener::{Listener, ReceivedMessage};
 use crate::session_file::JOURNAL;
 
 /// Longest time of which messages are lost with this process.
 const FLUSH: Duration = Duration::from_millis(500);
-/// Time between two looks whether the launcher has to be told that the recorder goes on.
+/// Time between two checks whether a status for the launcher is due.
 const BEAT: Duration = Duration::from_nanos(NodeStatus::PERIOD_NS / 2);
 /// Shortest time of a file: however often a journal breaks off, or seems to, there are not thousands of them.
 const SHORTEST: Duration = Duration::from_secs(1);
@@ -51,17 +51,17 @@ pub(super) struct Recording {
 }
 
 impl Recording {
-    /// Records until the listener is told to end, the time is over, or the rig ends; then leaves the rig.
+    /// Records until the listener is asked to stop, the time is over, or the rig ends; then leaves the rig.
     ///
     /// # Errors
-    /// A [`UserError`] where a file cannot be written: what was written until then can be read.
+    /// A [`RecorderError`] where a file cannot be written: what was written until then can be read.
     pub(super) async fn record(
         (settings, hurry): (RecorderSettings, Arc<Notify>),
         ring: Ring,
         listener: Listener,
         pulse: Option<Pulse>,
         events: UnboundedSender<RecorderEvent>,
-    ) -> Result<(), UserError> {
+    ) -> Result<(), RecorderError> {
         let part = Part::begin(ring.newest(), ring.create, &listener, settings.json_hz)?;
         let paints = matches(&settings.topic, JOURNAL);
         let mut recording = Self {
@@ -82,7 +82,7 @@ impl Recording {
         done
     }
 
-    async fn run(&mut self) -> Result<(), UserError> {
+    async fn run(&mut self) -> Result<(), RecorderError> {
         self.tell(RecorderEvent::Begun {
             file: self.part.path().to_owned(),
         });
@@ -127,7 +127,7 @@ impl Recording {
     }
 
     /// Writes a message: into another file where the journal broke off.
-    fn take_in(&mut self, received: ReceivedMessage) -> Result<(), UserError> {
+    fn take_in(&mut self, received: ReceivedMessage) -> Result<(), RecorderError> {
         match self.watch.note(&received) {
             // What is missing is in the painting that the file will begin with.
             Some(Break::Gap) if self.copy.is_some() => self.copy_anew(),
@@ -145,7 +145,7 @@ impl Recording {
     }
 
     /// Writes what waits, into another file from then on where this one is full, and has the painting copied once it may be.
-    fn flush(&mut self) -> Result<(), UserError> {
+    fn flush(&mut self) -> Result<(), RecorderError> {
         let division = &self.settings.division;
         let most_bytes = division.most_of_a_file();
         let longest = division.time_of_a_file();
@@ -163,7 +163,7 @@ impl Recording {
         Ok(())
     }
 
-    fn part_broken(&mut self) -> Result<(), UserError> {
+    fn part_broken(&mut self) -> Result<(), RecorderError> {
         if self.is_broken && self.part.age() >= SHORTEST {
             self.go_on(Continuation::JournalBroke)?;
         }
@@ -176,7 +176,7 @@ impl Recording {
     }
 
     /// Goes on in another file.
-    fn go_on(&mut self, cause: Continuation) -> Result<(), UserError> {
+    fn go_on(&mut self, cause: Continuation) -> Result<(), RecorderError> {
         let next = self.ring.next().to_owned();
         self.end_file(Some(&next))?;
         let create: fn(&Path) -> std::io::Result<File> = create_private;
@@ -197,8 +197,8 @@ impl Recording {
         Ok(())
     }
 
-    /// Takes in the end of a copy: the file has the painting, or the copy is made again later.
-    fn attach(&mut self, copied: Result<Vec<u8>, UserError>) -> Result<(), UserError> {
+    /// Handles the end of a copy: the file has the painting, or the copy is made again later.
+    fn attach(&mut self, copied: Result<Vec<u8>, RecorderError>) -> Result<(), RecorderError> {
         match copied {
             Ok(painting) => {
                 self.part.attach(&painting)?;
@@ -219,7 +219,7 @@ impl Recording {
     }
 
     /// Writes what has arrived, and the painting whose copy is being made, and ends the file.
-    async fn finish(&mut self) -> Result<(), UserError> {
+    async fn finish(&mut self) -> Result<(), RecorderError> {
         for received in self.listener.rest() {
             self.part.write(&received)?;
             self.state.add(received);
@@ -240,7 +240,7 @@ impl Recording {
     }
 
     /// Ends a file, with the name of the one in which the recording goes on, and says what it holds.
-    fn end_file(&mut self, next: Option<&Path>) -> Result<(), UserError> {
+    fn end_file(&mut self, next: Option<&Path>) -> Result<(), RecorderError> {
         let missing = self.state.missing(&self.listener);
         let [lost, dropped, _] = missing;
         let messages = self.part.finish(missing, next)?;
@@ -258,7 +258,7 @@ impl Recording {
     }
 }
 
-/// What was received so far, over all files.
+/// Messages received so far, over all files.
 struct State {
     /// True if the journal of the painting is among the topics.
     paints: bool,

@@ -4,9 +4,11 @@ use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::ask;
 use maulstick_bus::{Pending, Qos};
-use maulstick_rig::{NodeHandle, UserError, asker};
+use maulstick_rig::{NodeHandle, asker};
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::{Flags, Origin, encode};
+
+use crate::error::RecorderError;
 
 /// Longest wait for the device's daemon.
 const ANSWER: Duration = Duration::from_secs(3);
@@ -27,22 +29,22 @@ impl Consent {
     /// Asks the device for its consent to `sender`.
     ///
     /// # Errors
-    /// A [`UserError`] where its daemon does not give it.
+    /// A [`RecorderError`] where its daemon does not give it.
     pub(super) fn ask(
         member: &NodeHandle,
         device: &str,
         sender: Origin,
-    ) -> Result<Self, UserError> {
+    ) -> Result<Self, RecorderError> {
         let topic = member.topics.force(device);
         let Origin { source, epoch } = sender;
         let order = ForceOrder::Drive { source, epoch };
         let request = ForceRequest::by(&asker("`maulstick recording replay`"), order);
         let (bus, class) = (&*member.bus, Qos::Control);
         let given = ask::<_, ForceReply>(bus, &topic, class, sender, &request, ANSWER);
-        given.map_err(|error| {
-            UserError::failure(format!("'{device}' may not be moved: {error}"))
-                .at(topic.clone())
-                .help("its daemon has to run, in the version of this program")
+        given.map_err(|error| RecorderError::NoConsent {
+            device: device.to_owned(),
+            topic: topic.clone(),
+            error,
         })?;
         Ok(Self {
             topic,
@@ -56,15 +58,14 @@ impl Consent {
     /// Asks again in time; nobody waits for the answer.
     ///
     /// # Errors
-    /// A [`UserError`] where the bus is closed.
-    pub(super) fn renew(&mut self, member: &NodeHandle) -> Result<(), UserError> {
+    /// A [`RecorderError`] where the bus is closed.
+    pub(super) fn renew(&mut self, member: &NodeHandle) -> Result<(), RecorderError> {
         if Instant::now() < self.due {
             return Ok(());
         }
         self.due = Instant::now() + RENEWAL;
         let now_ns = member.bus.now_ns();
-        let bytes = encode(&self.sender, Flags::NONE, 0, now_ns, now_ns, &self.request)
-            .map_err(|error| UserError::failure(error.to_string()))?;
+        let bytes = encode(&self.sender, Flags::NONE, 0, now_ns, now_ns, &self.request)?;
         let pending = member
             .bus
             .ask(&self.topic, Qos::Control, bytes, ANSWER, &member.wake)?;

@@ -4,12 +4,14 @@ use std::time::Duration;
 
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Qos, Queue};
-use maulstick_rig::{NodeHandle, UserError};
+use maulstick_rig::NodeHandle;
 use maulstick_streams::recording::RecordedMessage;
 use maulstick_types::haptics::{ContactModel, FluidForce};
 use maulstick_types::stylus::{StylusInfo, StylusSample};
-use maulstick_types::{Origin, decode};
+use maulstick_types::{Message, Origin, decode};
 use tokio::time::timeout;
+
+use crate::error::RecorderError;
 
 /// Longest wait for the device.
 pub(super) const PATIENCE: Duration = Duration::from_secs(5);
@@ -23,7 +25,7 @@ pub(super) struct Driven {
 
 impl Driven {
     /// Finds the device in the rig, in its current session.
-    pub(super) async fn find(member: &NodeHandle, name: &str) -> Result<Self, UserError> {
+    pub(super) async fn find(member: &NodeHandle, name: &str) -> Result<Self, RecorderError> {
         let (bus, topics) = (&*member.bus, &member.topics);
         let queue = || Queue::Ring(16);
         let sample = topics.sample(name);
@@ -61,18 +63,15 @@ impl Driven {
             .await
             .ok()
             .flatten()
-            .ok_or_else(|| {
-                UserError::usage(format!("no device called '{name}' is in the rig"))
-                    .help("`maulstick device list` shows which are")
-            })
+            .ok_or_else(|| RecorderError::NoDevice(name.to_owned()))
     }
 
     /// A recorded force of paint as one for this device.
-    pub(super) fn address_fluid(&self, message: &RecordedMessage) -> Result<FluidForce, UserError> {
-        let (_, force) = decode::<FluidForce>(&message.bytes).map_err(|error| {
-            UserError::usage(format!("a force of paint cannot be read: {error}"))
-                .help("play it with the version of Maulstick that recorded it")
-        })?;
+    pub(super) fn address_fluid(
+        &self,
+        message: &RecordedMessage,
+    ) -> Result<FluidForce, RecorderError> {
+        let force: FluidForce = read("a force of paint cannot be read", message)?;
         Ok(FluidForce {
             device: self.origin.source,
             device_epoch: self.origin.epoch,
@@ -81,11 +80,8 @@ impl Driven {
     }
 
     /// A recorded model as one for this device.
-    pub(super) fn address(&self, message: &RecordedMessage) -> Result<ContactModel, UserError> {
-        let (_, model) = decode::<ContactModel>(&message.bytes).map_err(|error| {
-            UserError::usage(format!("a contact model cannot be read: {error}"))
-                .help("play it with the version of Maulstick that recorded it")
-        })?;
+    pub(super) fn address(&self, message: &RecordedMessage) -> Result<ContactModel, RecorderError> {
+        let model: ContactModel = read("a contact model cannot be read", message)?;
         Ok(ContactModel {
             device: self.origin.source,
             device_epoch: self.origin.epoch,
@@ -93,4 +89,13 @@ impl Driven {
             ..model
         })
     }
+}
+
+fn read<M: Message>(what: &str, message: &RecordedMessage) -> Result<M, RecorderError> {
+    let read = decode::<M>(&message.bytes).map(|(_, message)| message);
+    read.map_err(|error| RecorderError::Unreadable {
+        what: what.to_owned(),
+        error: error.to_string(),
+        file: None,
+    })
 }

@@ -1,14 +1,15 @@
 //! Events of a recording in the order of time, read ahead beside the player.
 
-use maulstick_rig::UserError;
 use tokio::sync::mpsc::{Receiver, Sender, channel};
 use tokio::task::spawn_blocking;
+
+use crate::error::RecorderError;
 
 /// Events that are read ahead.
 const AHEAD: usize = 1024;
 
 /// An event and its time since the beginning, ns; the end of the file, or why it could not be read.
-type Item<T> = Result<Option<(u64, T)>, UserError>;
+type Item<T> = Result<Option<(u64, T)>, RecorderError>;
 
 /// Events that are still to come.
 #[derive(Debug)]
@@ -32,7 +33,7 @@ impl<T> Feed<T> {
 impl<T: Send + 'static> Events<T> {
     /// Reads them with `read`, which may wait for the disk.
     pub(super) fn read(
-        read: impl FnOnce(&Feed<T>) -> Result<(), UserError> + Send + 'static,
+        read: impl FnOnce(&Feed<T>) -> Result<(), RecorderError> + Send + 'static,
     ) -> Self {
         let (send, items) = channel(AHEAD);
         spawn_blocking(move || {
@@ -51,8 +52,8 @@ impl<T: Send + 'static> Events<T> {
     /// Time of the next event, ns; `None` at the end.
     ///
     /// # Errors
-    /// A [`UserError`] where the recording cannot be read.
-    pub(super) async fn next_ns(&mut self) -> Result<Option<u64>, UserError> {
+    /// A [`RecorderError`] where the recording cannot be read.
+    pub(super) async fn next_ns(&mut self) -> Result<Option<u64>, RecorderError> {
         if self.next.is_none() && !self.has_ended {
             self.next = self.items.recv().await.unwrap_or(Ok(None))?;
             self.has_ended = self.next.is_none();

@@ -5,9 +5,10 @@ use std::path::Path;
 use maulstick_device::{Take, held_brush};
 use maulstick_motion::Placement;
 use maulstick_motion::strokes::middle;
-use maulstick_rig::UserError;
 use maulstick_types::decode;
 use maulstick_types::stylus::{StylusPose, StylusSample};
+
+use crate::error::RecorderError;
 
 /// Place of a take on the desk.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,7 +33,7 @@ pub(super) struct Place {
 
 impl TakePlace {
     /// The place of the take in a file.
-    pub(super) fn of(&self, path: &Path) -> Result<Place, UserError> {
+    pub(super) fn of(&self, path: &Path) -> Result<Place, RecorderError> {
         let take = Take::read(path)?;
         let head_m = self.head_m(&take, path)?;
         let from_m = middle(&take.samples, head_m);
@@ -43,16 +44,17 @@ impl TakePlace {
             turn_rad: self.turn_deg.unwrap_or(0.0).to_radians(),
         };
         // Before the first stroke, not in its midst.
-        placement.motion(&take.samples, head_m).map_err(|fault| {
-            UserError::usage(fault.to_string())
-                .at(path.display().to_string())
-                .help(fault.help())
-        })?;
+        placement
+            .motion(&take.samples, head_m)
+            .map_err(|fault| RecorderError::Place {
+                fault,
+                file: path.to_owned(),
+            })?;
         Ok(Place { placement, head_m })
     }
 
     /// Length of the head, m; 0 where only pens are in the take, whose points are their own.
-    fn head_m(&self, take: &Take, path: &Path) -> Result<f64, UserError> {
+    fn head_m(&self, take: &Take, path: &Path) -> Result<f64, RecorderError> {
         let is_pen = |pose: &StylusPose| matches!(pose, StylusPose::Contact { .. });
         if take.samples.iter().all(|taken| is_pen(&taken.sample.pose)) {
             return Ok(0.0);
@@ -66,11 +68,13 @@ impl TakePlace {
 
 impl Place {
     /// The sample of a message there.
-    pub(super) fn sample(&self, bytes: &[u8]) -> Result<StylusSample, UserError> {
-        let (_, sample) = decode::<StylusSample>(bytes).map_err(|error| {
-            UserError::usage(format!("a sample cannot be read: {error}"))
-                .help("play it with the version of Maulstick that recorded it")
-        })?;
+    pub(super) fn sample(&self, bytes: &[u8]) -> Result<StylusSample, RecorderError> {
+        let (_, sample) =
+            decode::<StylusSample>(bytes).map_err(|error| RecorderError::Unreadable {
+                what: "a sample cannot be read".to_owned(),
+                error: error.to_string(),
+                file: None,
+            })?;
         Ok(self.placement.sample(&sample, self.head_m))
     }
 }

@@ -57,7 +57,7 @@ impl Controls {
     }
 }
 
-/// What plays.
+/// A replay in progress.
 #[derive(Debug)]
 pub(super) struct Playback {
     pub(super) transport: Transport,
@@ -75,7 +75,7 @@ pub(super) enum Leap {
     Forth,
 }
 
-/// What an order asks of a player.
+/// Next step of a player after its orders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Next {
     /// To play on.

@@ -1,6 +1,5 @@
 //! The handle of a player at work.
 
-use maulstick_rig::UserError;
 use maulstick_streams::Recording;
 use tokio::runtime::Handle;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
@@ -10,7 +9,9 @@ use super::report::ReplayReport;
 use super::settings::{Call, ReplaySettings};
 use super::transport::Order;
 use super::{guide, session, streams};
+use crate::error::RecorderError;
 use crate::session_file::{PAINTING, SessionFile};
+use crate::work::blocking;
 use crate::work::{StopRequest, Work};
 
 /// A player at work. Dropped, it is asked to stop, and nobody waits for its end.
@@ -54,25 +55,26 @@ impl Player {
     }
 
     /// Its result, once it has ended; then its last reports are there too. `None` afterwards.
-    pub fn result(&mut self) -> Option<Result<(), UserError>> {
+    pub fn result(&mut self) -> Option<Result<(), RecorderError>> {
         self.work.result()
     }
 
     /// Waits for its end.
     ///
     /// # Errors
-    /// A [`UserError`] where no rig runs, the recording lacks something, or the rig refuses it.
-    pub async fn ended(self) -> Result<(), UserError> {
+    /// A [`RecorderError`] where no rig runs, the recording lacks something, or the rig refuses it.
+    pub async fn ended(self) -> Result<(), RecorderError> {
         self.work.await
     }
 }
 
-async fn play(call: Call, controls: Controls) -> Result<(), UserError> {
+async fn play(call: Call, controls: Controls) -> Result<(), RecorderError> {
     let settings = &call.settings;
     if let Some(own) = &settings.guide {
         return guide::guide(&call, own, controls).await;
     }
-    let recording = Recording::open(&settings.recording)?;
+    let path = settings.recording.clone();
+    let recording = blocking(move || Ok(Recording::open(&path)?)).await?;
     let holds_painting = recording.attachments().contains_key(PAINTING);
     if !settings.sends()
         && holds_painting

@@ -9,7 +9,7 @@ use maulstick_device::player::Rate;
 pub enum ReplayReport {
     /// Where it is, five times a second and after each order.
     Position(Position),
-    /// How far a guided hand has come, as often.
+    /// Progress of a guided hand, as often.
     Guiding(Guiding),
     /// The rig goes over to the painting in which a session is painted again.
     Opening {

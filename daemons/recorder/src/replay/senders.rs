@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use maulstick_bus::Qos;
 use maulstick_bus::bus::Publish;
-use maulstick_rig::{NodeHandle, UserError};
+use maulstick_rig::NodeHandle;
 use maulstick_streams::Recording;
 use maulstick_streams::recording::RecordedMessage;
 use maulstick_streams::topic_pattern::matches;
@@ -16,6 +16,7 @@ use maulstick_types::{Flags, Header, Origin, decode, encode, name_hash};
 use super::driven::Driven;
 use super::pacing::Pacing;
 use super::place::Place;
+use crate::error::RecorderError;
 
 /// Topics that move the hand at a device: contact models and forces of paint.
 pub(super) const DRIVING: [&str; 2] = [MODELS, FLUIDS];
@@ -65,26 +66,13 @@ impl Senders<'_> {
         parts.join("/")
     }
 
-    /// Tells the rig of the device as which samples are sent.
+    /// Introduces the device as which samples are sent, with what the recorded one said of itself.
     pub(super) fn introduce(
         &mut self,
-        recording: &Recording,
+        recorded: Option<StylusInfo>,
         device: &str,
-    ) -> Result<(), UserError> {
-        let infos: Vec<u16> = recording
-            .topics()
-            .iter()
-            .filter(|(_, topic)| matches("stylus/*/info", &topic.name))
-            .map(|(channel, _)| *channel)
-            .collect();
-        let mut told = None;
-        recording.clone().messages([0, u64::MAX], &mut |message| {
-            if infos.contains(&message.channel) {
-                told = decode::<StylusInfo>(&message.bytes).ok();
-            }
-            told.is_none()
-        })?;
-        let Some((_, info)) = told else {
+    ) -> Result<(), RecorderError> {
+        let Some(info) = recorded else {
             return Ok(());
         };
         let info = StylusInfo {
@@ -115,10 +103,10 @@ impl Senders<'_> {
         flags: Flags,
         [seq, event_ns]: [u64; 2],
         message: &M,
-    ) -> Result<Vec<u8>, UserError> {
+    ) -> Result<Vec<u8>, RecorderError> {
         let now_ns = self.member.bus.now_ns();
-        encode(&self.origin(topic), flags, seq, event_ns, now_ns, message)
-            .map_err(|error| UserError::failure(error.to_string()))
+        let origin = self.origin(topic);
+        Ok(encode(&origin, flags, seq, event_ns, now_ns, message)?)
     }
 
     /// Sends a message as one of now: its number and its times are new.
@@ -126,7 +114,7 @@ impl Senders<'_> {
         &mut self,
         recorded: &str,
         message: &RecordedMessage,
-    ) -> Result<(), UserError> {
+    ) -> Result<(), RecorderError> {
         let topic = self.topic(recorded);
         let now_ns = self.member.bus.now_ns();
         let old = message.header;
@@ -183,7 +171,7 @@ impl Senders<'_> {
     }
 
     /// Takes the styluses away, so that a brush does not go on from where they were to where they are next.
-    pub(super) fn lift(&mut self) -> Result<(), UserError> {
+    pub(super) fn lift(&mut self) -> Result<(), RecorderError> {
         let is_stylus = |topic: &&String| matches("stylus/*/sample", topic);
         let topics: Vec<String> = self.senders.keys().filter(is_stylus).cloned().collect();
         for topic in topics {
@@ -195,7 +183,7 @@ impl Senders<'_> {
         Ok(())
     }
 
-    fn put(&mut self, topic: &str, qos: Qos, bytes: Vec<u8>) -> Result<(), UserError> {
+    fn put(&mut self, topic: &str, qos: Qos, bytes: Vec<u8>) -> Result<(), RecorderError> {
         if !self.senders.contains_key(topic) {
             let key = format!("{}{topic}", self.member.topics.prefix());
             let publisher = self.member.bus.publisher(&key, qos)?;
@@ -212,4 +200,19 @@ impl Senders<'_> {
         }
         Ok(())
     }
+}
+
+/// The first information of a stylus in a recording.
+pub(super) fn first_info(mut recording: Recording) -> Result<Option<StylusInfo>, RecorderError> {
+    let topics = recording.topics().iter();
+    let infos = topics.filter(|(_, topic)| matches("stylus/*/info", &topic.name));
+    let infos: Vec<u16> = infos.map(|(channel, _)| *channel).collect();
+    let mut found = None;
+    recording.messages([0, u64::MAX], &mut |message| {
+        if infos.contains(&message.channel) {
+            found = decode::<StylusInfo>(&message.bytes).ok();
+        }
+        found.is_none()
+    })?;
+    Ok(found.map(|(_, info)| info))
 }

@@ -21,12 +21,13 @@ use super::playback::{Controls, Leap, Next, Playback};
 use super::report::ReplayReport;
 use super::session_painting::{SessionPainting, free_name};
 use super::settings::{Call, ReplaySettings};
+use crate::error::RecorderError;
 use crate::paintings::{open_begin, wrong};
 use crate::session_file::{Event, PAINTING, SessionFile};
 
 /// Records that the paint node accepts at once: in between it serves the window.
 const BATCH: usize = 16;
-/// Time after which the paint node is told that the player is still there.
+/// Time after which the paint node hears from a player that has nothing to paint.
 const ALIVE: Duration = Duration::from_secs(2);
 /// Longest wait for the paint node.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -34,12 +35,12 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// Paints a session again.
 ///
 /// # Errors
-/// A [`UserError`] where the rig does not open its painting, or refuses a record.
+/// A [`RecorderError`] where the rig does not open its painting, or refuses a record.
 pub(super) async fn replay(
     call: &Call,
     session: &SessionFile,
     controls: Controls,
-) -> Result<(), UserError> {
+) -> Result<(), RecorderError> {
     let settings = &call.settings;
     let range_ns = settings.range_ns(session.length_ns())?;
     let path = free_name(settings.document.as_deref(), &settings.recording)?;
@@ -56,7 +57,7 @@ async fn paint(
     session: &SessionFile,
     (mut playback, path): (Playback, PathBuf),
     member: &NodeHandle,
-) -> Result<(), UserError> {
+) -> Result<(), RecorderError> {
     let mut painter = SessionPainter {
         settings,
         session,
@@ -77,7 +78,7 @@ async fn paint(
     played.and(ended)
 }
 
-/// What paints a session again.
+/// Painter of a session.
 struct SessionPainter<'a> {
     settings: &'a ReplaySettings,
     session: &'a SessionFile,
@@ -88,17 +89,17 @@ struct SessionPainter<'a> {
     number: u64,
     /// Number of the next batch.
     batch: u64,
-    /// When the paint node was told something last.
+    /// Time of the newest command to the paint node.
     sent: Instant,
 }
 
 impl SessionPainter<'_> {
-    /// Plays until the end, or until it is told to end.
+    /// Plays until the end, or until it is asked to stop.
     async fn play(
         &mut self,
         playback: &mut Playback,
         mut events: Events<Record>,
-    ) -> Result<(), UserError> {
+    ) -> Result<(), RecorderError> {
         let mut played_ns = 0;
         while !self.member.stop.requested() {
             let next_ns = events.next_ns().await?;
@@ -135,8 +136,8 @@ impl SessionPainter<'_> {
         Ok(())
     }
 
-    /// What was accepted, as it comes, once the first of it has come: reading may take longer than the paint node waits.
-    async fn events(&self) -> Result<Events<Record>, UserError> {
+    /// Records that were accepted, once the first of them has come: reading may take longer than the paint node waits.
+    async fn events(&self) -> Result<Events<Record>, RecorderError> {
         let mut session = self.session.clone();
         let end_s = self.settings.end_s;
         let to_ns = end_s.map_or(u64::MAX, |end_s| (end_s * 1e9) as u64);
@@ -156,17 +157,17 @@ impl SessionPainter<'_> {
                 if is_wanted {
                     Ok(())
                 } else {
-                    Err(UserError::failure("the player reads anew"))
+                    Err(RecorderError::ReadsAnew.into())
                 }
             })?;
-            document.close().map_err(|error| wrong(&begin, &error))
+            Ok(document.close().map_err(|error| wrong(&begin, &error))?)
         });
         events.next_ns().await?;
         Ok(events)
     }
 
     /// Has the rig go on in the painting as it was at the beginning, and the hands wait.
-    fn open(&mut self, controls: &Controls) -> Result<(), UserError> {
+    fn open(&mut self, controls: &Controls) -> Result<(), RecorderError> {
         self.report(controls, |painting| ReplayReport::Opening { painting });
         let stop = || self.member.stop.requested();
         self.painting
@@ -175,7 +176,7 @@ impl SessionPainter<'_> {
     }
 
     /// The same once more.
-    fn open_anew(&mut self, controls: &Controls) -> Result<(), UserError> {
+    fn open_anew(&mut self, controls: &Controls) -> Result<(), RecorderError> {
         self.end()?;
         self.report(controls, |painting| ReplayReport::Opening { painting });
         self.painting
@@ -183,7 +184,7 @@ impl SessionPainter<'_> {
         self.begin(controls)
     }
 
-    fn begin(&mut self, controls: &Controls) -> Result<(), UserError> {
+    fn begin(&mut self, controls: &Controls) -> Result<(), RecorderError> {
         (self.number, self.batch) = (random_u64(), 0);
         self.command(SessionCommand::Begin {
             session: self.number,
@@ -196,7 +197,7 @@ impl SessionPainter<'_> {
         controls.report(report(self.painting.path.clone()));
     }
 
-    fn send(&mut self, batch: &[Record]) -> Result<(), UserError> {
+    fn send(&mut self, batch: &[Record]) -> Result<(), RecorderError> {
         let records =
             journal::write(batch).map_err(|error| UserError::failure(error.to_string()))?;
         self.batch += 1;
@@ -207,17 +208,17 @@ impl SessionPainter<'_> {
         })
     }
 
-    fn end(&mut self) -> Result<(), UserError> {
+    fn end(&mut self) -> Result<(), RecorderError> {
         self.command(SessionCommand::End {
             session: self.number,
         })
     }
 
-    fn command(&mut self, command: SessionCommand) -> Result<(), UserError> {
+    fn command(&mut self, command: SessionCommand) -> Result<(), RecorderError> {
         self.sent = Instant::now();
         let stop = &self.member.stop;
         self.client
-            .send(command, None, PATIENCE, &|| stop.requested())
-            .map(drop)
+            .send(command, None, PATIENCE, &|| stop.requested())?;
+        Ok(())
     }
 }

@@ -11,6 +11,7 @@ use maulstick_rig::user_error::EXIT_FAILURE;
 use maulstick_rig::{NodeHandle, UserError, whole_path};
 use maulstick_types::command::{RIG_NODE, RigCommand};
 
+use crate::error::RecorderError;
 use crate::paintings::{open_begin, wrong};
 use crate::session_file::{PAINTING, SessionFile};
 
@@ -20,18 +21,15 @@ const LONGEST: Duration = Duration::from_secs(3600);
 /// A name for it that is free and can be written; without `chosen` that of the recording with `-replay` behind it.
 ///
 /// # Errors
-/// A [`UserError`] where the chosen name is taken, or cannot be written.
-pub(super) fn free_name(chosen: Option<&Path>, recording: &Path) -> Result<PathBuf, UserError> {
+/// A [`RecorderError`] where the chosen name is taken, or cannot be written.
+pub(super) fn free_name(chosen: Option<&Path>, recording: &Path) -> Result<PathBuf, RecorderError> {
     let path = chosen.map_or_else(|| free_beside(recording), Path::to_owned);
-    let wrong = |what: &str| UserError::usage(what).at(path.display().to_string());
     if is_companion(&path) {
-        return Err(wrong("a name that ends so may belong to a painting")
-            .help("give the painting another name"));
+        return Err(RecorderError::CompanionName(path));
     }
     check_writable(&path, Kind::Own).map_err(|error| UserError::writing(&path, &error))?;
     if path.exists() {
-        return Err(wrong("this painting is there already")
-            .help("name one that is not: the session is painted there from its beginning"));
+        return Err(RecorderError::Exists(path));
     }
     Ok(path)
 }
@@ -47,12 +45,12 @@ fn free_beside(recording: &Path) -> PathBuf {
 }
 
 /// Marks a painting as one in which nobody paints until its player comes.
-fn hold(path: &Path) -> Result<(), UserError> {
+fn hold(path: &Path) -> Result<(), RecorderError> {
     let (document, mut sequencer, since) = open_begin(path)?;
     let mut checkpoint = Checkpoint::of(&mut sequencer, since);
     checkpoint.sequencer.held = true;
     document.write_checkpoint(checkpoint);
-    document.close().map_err(|error| wrong(path, &error))
+    Ok(document.close().map_err(|error| wrong(path, &error))?)
 }
 
 /// The painting of a replay.
@@ -74,7 +72,7 @@ impl SessionPainting {
         session: &SessionFile,
         forget: bool,
         stop: &dyn Fn() -> bool,
-    ) -> Result<(), UserError> {
+    ) -> Result<(), RecorderError> {
         go_on_in(&mut self.rig, session, (&self.path, forget), stop)
     }
 
@@ -83,7 +81,7 @@ impl SessionPainting {
         &mut self,
         session: &SessionFile,
         forget: bool,
-    ) -> Result<(), UserError> {
+    ) -> Result<(), RecorderError> {
         let failed = |error: std::io::Error| UserError::writing(&self.path, &error);
         let folder = self.path.parent();
         let folder = folder.filter(|folder| !folder.as_os_str().is_empty());
@@ -95,7 +93,8 @@ impl SessionPainting {
         go_on_in(&mut self.rig, session, (&between, false), &never)?;
         std::fs::remove_file(&self.path).map_err(failed)?;
         self.open(session, forget, &never)?;
-        std::fs::remove_dir_all(&folder).map_err(|error| UserError::writing(&folder, &error))
+        std::fs::remove_dir_all(&folder).map_err(|error| UserError::writing(&folder, &error))?;
+        Ok(())
     }
 }
 
@@ -104,7 +103,7 @@ fn go_on_in(
     session: &SessionFile,
     (path, forget): (&Path, bool),
     stop: &dyn Fn() -> bool,
-) -> Result<(), UserError> {
+) -> Result<(), RecorderError> {
     session.write_painting(path)?;
     hold(path)?;
     let command = RigCommand::Open {
@@ -119,5 +118,5 @@ fn go_on_in(
     {
         std::fs::remove_file(path).ok();
     }
-    opened.map(drop)
+    Ok(opened.map(drop)?)
 }

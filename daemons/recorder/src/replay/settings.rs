@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use maulstick_device::player::Rate;
-use maulstick_rig::{NodeHandle, UserError};
+use maulstick_rig::NodeHandle;
 
 use super::place::TakePlace;
+use crate::error::RecorderError;
 use crate::work::StopRequest;
 
 /// Settings of a player.
@@ -75,25 +76,21 @@ impl ReplaySettings {
     }
 
     /// Beginning and end of what is played of a recording of this length, ns.
-    pub(super) fn range_ns(&self, length_ns: u64) -> Result<[u64; 2], UserError> {
+    pub(super) fn range_ns(&self, length_ns: u64) -> Result<[u64; 2], RecorderError> {
         let length_s = length_ns as f64 * 1e-9;
         let end_s = self.end_s.unwrap_or(length_s);
         let start_s = self.start_s;
         if !(start_s >= 0.0 && start_s < end_s && start_s < length_s) {
-            let what = format!("the start at {start_s} s is not before the end");
-            return Err(UserError::usage(what)
-                .at(self.place())
-                .help(format!("it is {length_s:.1} s long")));
+            return Err(RecorderError::Start {
+                start: start_s.to_string(),
+                length: format!("{length_s:.1}"),
+                file: self.recording.clone(),
+            });
         }
         Ok([
             (start_s * 1e9) as u64,
             ((end_s * 1e9) as u64).min(length_ns),
         ])
-    }
-
-    /// The recording, as errors name it.
-    pub(super) fn place(&self) -> String {
-        self.recording.display().to_string()
     }
 
     /// True if messages are sent again, whatever the recording holds.
@@ -105,7 +102,7 @@ impl ReplaySettings {
     }
 }
 
-/// What a player was asked for.
+/// Call of a player.
 pub(super) struct Call {
     pub(super) settings: ReplaySettings,
     pub(super) rig: String,
@@ -114,7 +111,7 @@ pub(super) struct Call {
 
 impl Call {
     /// Joins the rig.
-    pub(super) fn join(&self) -> Result<NodeHandle, UserError> {
+    pub(super) fn join(&self) -> Result<NodeHandle, RecorderError> {
         self.request.clone().join(&self.rig, "replay")
     }
 }

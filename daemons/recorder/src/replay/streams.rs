@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use maulstick_bus::typed::random_epoch;
 use maulstick_device::player::Rate;
-use maulstick_rig::{NodeHandle, UserError};
+use maulstick_rig::NodeHandle;
 use maulstick_streams::Recording;
 use maulstick_streams::recording::RecordedMessage;
 use maulstick_streams::topic_pattern::matches;
@@ -19,8 +19,10 @@ use super::events::Events;
 use super::pacing::Pacing;
 use super::place::Place;
 use super::playback::{Controls, Next, Playback};
-use super::senders::{DRIVING, Senders, drives};
+use super::senders::{DRIVING, Senders, drives, first_info};
 use super::settings::{Call, ReplaySettings};
+use crate::error::RecorderError;
+use crate::work::blocking;
 
 /// Topics that are sent again where none is named.
 const HANDS: [&str; 2] = ["stylus/*/sample", "control/*/sample"];
@@ -30,16 +32,21 @@ const PAUSE: Duration = Duration::from_millis(20);
 /// Sends the messages of a recording again.
 ///
 /// # Errors
-/// A [`UserError`] where no rig runs, or the recording has none of the topics.
+/// A [`RecorderError`] where no rig runs, or the recording has none of the topics.
 pub(super) async fn replay(
     call: &Call,
     recording: &Recording,
     controls: Controls,
-) -> Result<(), UserError> {
+) -> Result<(), RecorderError> {
     let settings = &call.settings;
     let patterns = patterns(settings, recording)?;
-    let place = settings.place.map(|place| place.of(recording.path()));
-    let place = place.transpose()?;
+    let place = match settings.place {
+        Some(place) => {
+            let take = recording.path().to_owned();
+            Some(blocking(move || place.of(&take)).await?)
+        }
+        None => None,
+    };
     let [first_ns, last_ns] = recording.times_ns().unwrap_or_default();
     let range_ns = settings.range_ns(last_ns.saturating_sub(first_ns))?;
     let source = Source {
@@ -61,7 +68,7 @@ async fn send(
     playback: Playback,
     place: Option<Place>,
     member: &NodeHandle,
-) -> Result<(), UserError> {
+) -> Result<(), RecorderError> {
     let driven = match &settings.drive {
         Some(device) => Some(Driven::find(member, device).await?),
         None => None,
@@ -86,19 +93,21 @@ async fn send(
         newest_ns: BTreeMap::new(),
     };
     if let Some(device) = &settings.device {
-        senders.introduce(source.recording, device)?;
+        let recording = source.recording.clone();
+        let recorded = blocking(move || first_info(recording)).await?;
+        senders.introduce(recorded, device)?;
     }
     play(settings, source, playback, &mut senders, consent).await
 }
 
-/// Plays until the end, or until it is told to end.
+/// Plays until the end, or until it is asked to stop.
 async fn play(
     settings: &ReplaySettings,
     source: &Source<'_>,
     mut playback: Playback,
     senders: &mut Senders<'_>,
     mut consent: Option<Consent>,
-) -> Result<(), UserError> {
+) -> Result<(), RecorderError> {
     let member: &NodeHandle = senders.member;
     let mut events = source.events(source.range_ns[0]);
     let mut played_ns = 0;
@@ -143,7 +152,10 @@ async fn play(
 }
 
 /// Patterns of the topics that are sent.
-fn patterns(settings: &ReplaySettings, recording: &Recording) -> Result<Vec<String>, UserError> {
+fn patterns(
+    settings: &ReplaySettings,
+    recording: &Recording,
+) -> Result<Vec<String>, RecorderError> {
     let path = recording.path();
     let patterns = match settings.topics.is_empty() {
         true if settings.drive.is_some() => DRIVING.map(str::to_owned).to_vec(),
@@ -154,35 +166,30 @@ fn patterns(settings: &ReplaySettings, recording: &Recording) -> Result<Vec<Stri
     let all = recording.topics().values().map(|topic| topic.name.clone());
     let all: Vec<String> = all.collect();
     if !all.iter().any(|topic| is_meant(topic)) {
-        let what = format!("it has no topic {}", patterns.join(", "));
-        return Err(UserError::usage(what)
-            .at(path.display().to_string())
-            .help(format!("it has {}", all.join(", "))));
+        return Err(RecorderError::NoTopic {
+            wanted: patterns,
+            known: all,
+            file: path.to_owned(),
+        });
     }
     let mut driving: Vec<&String> = all.iter().filter(|topic| is_meant(topic)).collect();
     driving.retain(|topic| drives(topic));
     if !driving.is_empty() && settings.drive.is_none() {
-        return Err(UserError::usage(
-            "contact models and forces of paint move the hand that holds the device",
-        )
-        .help("name the device, with a hand at it that expects it: --drive DEVICE"));
+        return Err(RecorderError::MovesHand);
     }
     let device = |topic: &str| topic.split('/').nth(1).map(str::to_owned);
     if let [one, others @ ..] = driving.as_slice()
         && others.iter().any(|other| device(other) != device(one))
     {
-        let what = "it has the contact models of several devices, and one hand feels one";
-        return Err(UserError::usage(what)
-            .at(path.display().to_string())
-            .help(format!(
-                "choose one: --topic 'haptics/{}/*'",
-                device(one).unwrap_or_default()
-            )));
+        return Err(RecorderError::SeveralDevices {
+            device: device(one).unwrap_or_default(),
+            file: path.to_owned(),
+        });
     }
     Ok(patterns)
 }
 
-/// What of a recording is played.
+/// Part of a recording that is played.
 struct Source<'a> {
     recording: &'a Recording,
     /// Patterns of its topics.
@@ -200,12 +207,12 @@ impl Source<'_> {
             let topics = recording.topics().clone();
             let [first_ns, _] = recording.times_ns().unwrap_or_default();
             let range = [first_ns + from_ns, first_ns.saturating_add(to_ns)];
-            recording.messages(range, &mut |message| {
+            Ok(recording.messages(range, &mut |message| {
                 let topic = topics.get(&message.channel).map(|topic| &topic.name);
                 let meant = topic.filter(|topic| patterns.iter().any(|own| matches(own, topic)));
                 let at_ns = message.arrived_ns.saturating_sub(first_ns);
                 meant.is_none_or(|topic| feed.push(at_ns, (topic.clone(), message)))
-            })
+            })?)
         })
     }
 }

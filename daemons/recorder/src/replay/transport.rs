@@ -124,9 +124,10 @@ impl Transport {
             Order::Seek(s) => self.go_to((s.max(0.0) * 1e9) as u64),
             Order::Skip(s) => {
                 let by_ns = (s.abs() * 1e9) as u64;
-                self.go_to(match s < 0.0 {
-                    true => before_ns.saturating_sub(by_ns),
-                    false => before_ns.saturating_add(by_ns),
+                self.go_to(if s < 0.0 {
+                    before_ns.saturating_sub(by_ns)
+                } else {
+                    before_ns.saturating_add(by_ns)
                 });
             }
             Order::Step => {

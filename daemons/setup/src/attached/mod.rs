@@ -1,4 +1,4 @@
-//! What is attached to this machine: HID devices and serial ports as Linux tells of them in sysfs,
+//! Devices attached to this machine: HID devices and serial ports as Linux lists them in sysfs,
 //! whoever may read them, and programs that drive devices.
 //!
 //! | module | holds |
@@ -63,7 +63,7 @@ pub enum Permission {
 }
 
 impl Permission {
-    /// What is missing for a driver that reads the node, with advice.
+    /// Missing requirement of a driver that reads the node, with advice.
     fn missing(self) -> Option<String> {
         let what = match self {
             Self::Granted => return None,

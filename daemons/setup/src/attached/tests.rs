@@ -85,7 +85,7 @@ impl Machine {
         symlink(&entry, class.join(node)).expect("linked");
     }
 
-    /// What is found of each: name, id, node, driver.
+    /// Name, id, node and driver of each that is found.
     fn found(&self, look: fn(&Places<'_>) -> Vec<Attached>) -> Vec<Attached> {
         let root = self.folder.path();
         look(&Places {

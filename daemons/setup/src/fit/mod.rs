@@ -7,7 +7,6 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use maulstick_client::connection::Client;
 use maulstick_device::corner_calibration::{
     Corner, CornerCalibration, HandReading, Progress, TouchRejection,
 };
@@ -20,7 +19,8 @@ use maulstick_rig::config::DeviceSection;
 use maulstick_rig::files::{Kind, check_writable};
 use maulstick_rig::{RigConfig, Stop, UserError, user_devices};
 
-use crate::running::{in_rig, is_same, put_in_rig, remove_from_rig};
+use crate::error::{SetupError, Task};
+use crate::running::{Devices as _, Running, is_same};
 use crate::user_file::unknown;
 
 /// A step of a fit.
@@ -35,7 +35,7 @@ pub enum FitEvent {
     Opened {
         /// Its name.
         device: String,
-        /// What its driver found.
+        /// Description by its driver.
         what: String,
     },
     /// A corner is to be touched.
@@ -157,13 +157,13 @@ pub struct FitSettings<'a> {
 /// puts the device back.
 ///
 /// # Errors
-/// A [`UserError`] for a device that is not there, corners that do not fit the canvas, or settings that
+/// A [`SetupError`] for a device that is not there, corners that do not fit the canvas, or settings that
 /// cannot be written.
 pub fn fit(
     settings: &FitSettings<'_>,
     stop: &Stop,
     report: Report<'_>,
-) -> Result<FitEnd, UserError> {
+) -> Result<FitEnd, SetupError> {
     let (path, config, rig) = match settings.file {
         Some(path) => {
             let config = RigConfig::read(path)?;
@@ -175,25 +175,25 @@ pub fn fit(
             (path, config, settings.rig.to_owned())
         }
     };
-    let place = path.display().to_string();
-    let device = section(&config, settings.device).ok_or_else(|| {
-        let names = config.device.iter().map(|device| device.name.as_str());
-        let what = format!("there is no [[device]] called '{}'", settings.device);
-        UserError::unknown(what, settings.device, names).at(place.clone())
+    let device = section(&config.device, settings.device).ok_or_else(|| {
+        let known = config.device.iter().map(|device| device.name.clone());
+        SetupError::NoSection {
+            name: settings.device.to_owned(),
+            known: known.collect(),
+            file: path.clone(),
+        }
     })?;
     if device.driver == "spacemouse" {
-        let what = format!(
-            "'{}' moves the canvas itself: there is nothing to fit",
-            device.name
-        );
-        return Err(UserError::usage(what).at(place));
+        return Err(SetupError::MovesCanvas {
+            device: device.name,
+            file: path,
+        });
     }
-    let running = match Client::open(&rig) {
-        Ok(client) => section(&client.config()?, &device.name),
-        Err(_) => None,
-    };
+    let mut in_rig = Running::open(&rig)?;
+    let running = section(&in_rig.all()?, &device.name);
     is_same(&device, running.as_ref())?;
-    let fitted = remove_from_rig(&rig, &device.name)
+    let fitted = in_rig
+        .remove(&device.name)
         .and_then(|_| fit_free(&path, &config, device.clone(), (stop, &mut *report)));
     if let Some(running) = running {
         let is_written = matches!(fitted, Ok(FitEnd::Written));
@@ -202,18 +202,20 @@ pub fn fit(
             corners_m: now.flatten().or(running.corners_m),
             ..running
         };
-        if let Err(fault) = put_in_rig(&rig, &back) {
+        // The rig may have gone meanwhile.
+        let taken = Running::open(&rig).and_then(|mut rig| rig.put(&back));
+        if let Err(fault) = taken {
             report(FitEvent::NotTakenBack {
                 device: back.name,
-                what: fault.what,
+                what: fault.to_string(),
             })?;
         }
     }
     fitted
 }
 
-fn section(config: &RigConfig, name: &str) -> Option<DeviceSection> {
-    let mut devices = config.device.iter();
+fn section(devices: &[DeviceSection], name: &str) -> Option<DeviceSection> {
+    let mut devices = devices.iter();
     devices.find(|device| device.name == name).cloned()
 }
 
@@ -221,19 +223,21 @@ fn section(config: &RigConfig, name: &str) -> Option<DeviceSection> {
 fn own_settings(
     settings: &FitSettings<'_>,
     report: Report<'_>,
-) -> Result<(PathBuf, RigConfig), UserError> {
+) -> Result<(PathBuf, RigConfig), SetupError> {
     let path = user_devices::path()?;
     let device = if path.exists() {
         user_devices::read(&path)?
     } else {
         Vec::new()
     };
+    let running = Running::open(settings.rig)?.config()?;
     if !device.iter().any(|own| own.name == settings.device) {
-        return Err(not_own(settings, &device));
+        let in_rig = running.map_or_else(Vec::new, |config| config.device);
+        return Err(not_own(settings.device, &device, &in_rig));
     }
-    let config = match Client::open(settings.rig) {
-        Ok(client) => client.config()?,
-        Err(_) => {
+    let config = match running {
+        Some(config) => config,
+        None => {
             let config = RigConfig::default();
             report(FitEvent::DefaultCanvas {
                 size_mm: [config.canvas.width_mm, config.canvas.height_mm],
@@ -245,14 +249,14 @@ fn own_settings(
 }
 
 /// The error that a device is none of the user's own, which are `own`.
-fn not_own(settings: &FitSettings<'_>, own: &[DeviceSection]) -> UserError {
-    let (name, in_rig) = (settings.device, in_rig(settings.rig).unwrap_or_default());
+fn not_own(name: &str, own: &[DeviceSection], in_rig: &[DeviceSection]) -> SetupError {
     if !in_rig.iter().any(|device| device.name == name) {
-        return unknown(name, own, &in_rig);
+        return unknown(name, own, in_rig);
     }
-    UserError::usage(format!("'{name}' is a device of the rig's own settings")).help(format!(
-        "name the file that the rig was started with: `maulstick device fit {name} --rig rig.toml`"
-    ))
+    SetupError::OfTheRig {
+        device: name.to_owned(),
+        task: Task::Fit,
+    }
 }
 
 /// Fits a device that nobody else has open.
@@ -261,7 +265,7 @@ fn fit_free(
     config: &RigConfig,
     device: DeviceSection,
     (stop, report): (&Stop, Report<'_>),
-) -> Result<FitEnd, UserError> {
+) -> Result<FitEnd, SetupError> {
     check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;
     let mut hand = Hand {
         corners: CornerCalibration::new(),
@@ -286,7 +290,7 @@ fn fit_free(
         ..
     } = hand;
     if let Some(fault) = fault {
-        return Err(fault);
+        return Err(fault.into());
     }
     let Some(corners) = calibration.all() else {
         report(FitEvent::Unwritten)?;
@@ -323,18 +327,17 @@ fn fit_ferrule(
     config: &RigConfig,
     corners: &[DVec3; 3],
     report: Report<'_>,
-) -> Result<(), UserError> {
+) -> Result<(), SetupError> {
     let (to_desk, fit) = by_corners(corners, canvas_m(&config.canvas))?;
     let (is_good, off_m) = (fit.is_good(), fit.off_m);
     report(FitEvent::Fitted(fit))?;
     if !is_good {
-        return Err(UserError::failure("the three places are no corners of the canvas; nothing is written")
-            .help("its width by height has to fit within 10 %, and its corner to be a right one; begin again"));
+        return Err(SetupError::NoCorners);
     }
-    report(FitEvent::Scaled {
+    Ok(report(FitEvent::Scaled {
         scale: to_desk.scale,
         off_m,
-    })
+    })?)
 }
 
 /// A hand that shows the corners, one after the other.

@@ -21,7 +21,7 @@ use x11rb::rust_connection::RustConnection;
 
 pub use self::device::{Labels, NearTool, XinputDevice};
 use crate::reading::{PenReading, Tool};
-use crate::thread::{Source, gone, readable};
+use crate::source::{Source, gone, readable};
 
 /// All devices, in a selection of events.
 const ALL: u16 = 0;

@@ -18,7 +18,7 @@ use wayland_server::backend::{ClientData, ClientId, DisconnectReason};
 use wayland_server::protocol::{wl_compositor, wl_region, wl_seat, wl_surface};
 use wayland_server::{Client, DataInit, Dispatch, Display, DisplayHandle, GlobalDispatch, New};
 
-/// What a tool does next; several between two frames.
+/// Next events of a tool; several between two frames.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Do {
     /// It is near surface number so many of the client.

@@ -1,4 +1,4 @@
-//! What the pen touches decides.
+//! Target of a pen: desk or panel, by what it touches first.
 
 use std::sync::Arc;
 

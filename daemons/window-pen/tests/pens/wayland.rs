@@ -5,7 +5,7 @@ use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
 use maulstick_device::pen::{End, Presence};
-use maulstick_window_pen::thread::Source;
+use maulstick_window_pen::source::Source;
 use maulstick_window_pen::wayland::WaylandPens;
 use maulstick_window_pen::window::PointerEvent;
 use maulstick_window_pen::{PenReading, PenThread};

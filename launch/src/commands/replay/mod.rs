@@ -190,6 +190,7 @@ pub fn run(options: &ReplayOptions) -> Result<i32, UserError> {
         let ended = player.ended().await;
         shown?;
         reports.end(ended.is_ok())?;
-        ended.map(|()| code)
+        ended?;
+        Ok(code)
     })
 }

@@ -108,6 +108,7 @@ pub(super) fn run(options: &RecordOptions) -> Result<i32, UserError> {
                 recorder.stop();
             }
         }
-        recorder.ended().await.and(shown).map(|()| 0)
+        recorder.ended().await?;
+        shown.map(|()| 0)
     })
 }

@@ -48,10 +48,10 @@ impl LogFormat {
     }
 }
 
-fn trouble_in_words(trouble: &CopyTrouble) -> &str {
+fn trouble_in_words(trouble: &CopyTrouble) -> String {
     match trouble {
-        CopyTrouble::InMemory => "a painting in memory only cannot be copied",
-        CopyTrouble::Failed(fault) => &fault.what,
+        CopyTrouble::InMemory => "a painting in memory only cannot be copied".to_owned(),
+        CopyTrouble::Failed(error) => error.to_string(),
     }
 }
 

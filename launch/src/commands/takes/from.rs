@@ -200,7 +200,7 @@ impl Source {
 
     fn write_painting(&self, to: &Path) -> Result<(), UserError> {
         match self {
-            Self::Session(session) => session.write_painting(to),
+            Self::Session(session) => Ok(session.write_painting(to)?),
             Self::Painting(painting) => painting.write_painting(to),
         }
     }
@@ -213,7 +213,8 @@ impl Source {
     ) -> Result<(), UserError> {
         match self {
             Self::Session(session) => {
-                session.follow(RecordedSession::after(sequencer), sequencer, to_ns, each)
+                let recorded = RecordedSession::after(sequencer);
+                Ok(session.follow(recorded, sequencer, to_ns, each)?)
             }
             Self::Painting(painting) => painting.follow(sequencer, to_ns, each),
         }

@@ -75,7 +75,8 @@ impl RenderOptions {
 
     /// The take, if it is a recorded session.
     fn session(&self) -> Result<Option<SessionFile>, UserError> {
-        self.take.as_deref().map_or(Ok(None), SessionFile::find)
+        let session = self.take.as_deref().map(SessionFile::find).transpose()?;
+        Ok(session.flatten())
     }
 
     /// Puts profile and gamut mapping into the settings.

@@ -1,7 +1,7 @@
 //! Requests to the rig as a whole: another painting, another file.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use maulstick_bus::typed::{CommandServer, Receiver, random_epoch};
 use maulstick_bus::{Bus, BusError, Qos, Queue, Request, Wake};
@@ -166,12 +166,6 @@ pub(super) fn refusal(fault: UserError) -> Outcome {
         what,
         advice: advice.unwrap_or_else(|| Advice::say(fault.help.unwrap_or_default())),
     }
-}
-
-/// True if two names lead to the same file.
-pub(super) fn is_same(one: &Path, other: &Path) -> bool {
-    let real = |path: &Path| std::fs::canonicalize(path).ok();
-    one == other || real(one).is_some_and(|path| real(other) == Some(path))
 }
 
 /// Nothing can be asked of a painting that is not there.

@@ -7,11 +7,12 @@ use std::time::Instant;
 use maulstick_rig::UserError;
 use maulstick_rig::command_client::CommandClient;
 use maulstick_rig::config::DeviceSection;
+use maulstick_rig::files::is_same;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome, RigCommand};
 
 use super::Supervisor;
 use super::node::State;
-use super::orders::{is_same, refusal, starts_again};
+use super::orders::{refusal, starts_again};
 use crate::up::plan::{Hands, Role, device};
 
 impl Supervisor {

@@ -3,11 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use maulstick_bus::RigFolder;
-use maulstick_rig::files::{Kind, write_whole};
+use maulstick_rig::files::{Kind, is_same, write_whole};
 use maulstick_rig::node_handle::CONFIG_FILE;
 use maulstick_rig::{RigConfig, Sketches, UserError};
 
-use super::orders::is_same;
 use super::sketch::{self, Leave};
 
 /// Settings of a rig.

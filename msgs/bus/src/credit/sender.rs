@@ -37,7 +37,7 @@ pub struct CreditSender<M> {
     ring: VecDeque<Kept>,
     /// Bytes of the messages in the ring.
     ring_bytes: usize,
-    /// True once it was said that a message was too long.
+    /// True once a message that was too long was logged.
     told: bool,
     message: PhantomData<fn(M)>,
 }

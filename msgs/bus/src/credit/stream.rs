@@ -81,7 +81,7 @@ impl<M> Stream<M> {
         }
     }
 
-    /// Takes in a message as it was sent.
+    /// Adds a message as it was sent.
     pub(super) fn take(&mut self, received: Received<M>, ordered: &mut u64) -> Taken {
         let (header, arrived_ns) = (received.header, received.arrived_ns);
         let fits = self.fits(&header);
@@ -100,7 +100,7 @@ impl<M> Stream<M> {
         self.put(received, ordered)
     }
 
-    /// Takes in a message that was requested again.
+    /// Adds a message that was requested again.
     pub(super) fn fill(&mut self, received: Received<M>, ordered: &mut u64) -> Taken {
         if received.header.epoch != self.epoch || !self.fits(&received.header) {
             return Taken::SetAside;

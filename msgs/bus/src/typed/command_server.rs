@@ -4,7 +4,7 @@ use maulstick_types::command::reply_cache::ReplyCache;
 use maulstick_types::command::{CommandReply, CommandRequest, Outcome};
 use maulstick_types::{Flags, Origin, encode};
 
-use super::Reader;
+use super::{Reader, send};
 use crate::bus::{Bus, BusError, Request, Server};
 use crate::inbox::Wake;
 
@@ -73,11 +73,7 @@ impl CommandServer {
                 ),
             })
         });
-        match bytes.map(|bytes| request.answer(bytes)) {
-            Ok(Ok(())) => {}
-            Ok(Err(error)) => tracing::debug!("a client is gone: {error}"),
-            Err(error) => tracing::error!("a command cannot be answered: {error}"),
-        }
+        send(request, bytes);
     }
 
     /// Number of requests that could not be read.

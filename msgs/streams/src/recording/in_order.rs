@@ -18,7 +18,7 @@ pub(super) struct InOrder {
 }
 
 impl InOrder {
-    /// Takes in a message of the stretch at a place of the file.
+    /// Adds a message of the stretch at a place of the file.
     pub(super) fn add(&mut self, at: u64, message: RecordedMessage) {
         self.bytes += message.bytes.len();
         self.added += 1;

@@ -166,7 +166,7 @@ impl Layout {
         })
     }
 
-    /// Takes in a message outside of chunks.
+    /// Adds a message outside of chunks.
     fn add_message(&mut self, at: u64, bytes: u64, record: &Found<'_>) {
         match self.stretches.last_mut() {
             Some(last) if !last.is_chunk && last.end() == at && last.bytes < STRETCH_BYTES => {

@@ -1,4 +1,4 @@
-//! What to do about something that is wrong: the name that was meant, and advice that each front end has its own words
+//! Advice about an error: the name that was meant, and advice that each front end has its own words
 //! for.
 
 use std::fmt;

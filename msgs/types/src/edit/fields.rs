@@ -18,6 +18,26 @@ pub(super) fn read<'de, T: Deserialize<'de>>(object: &'de Map<String, Value>) ->
     T::deserialize(Fields(MapDeserializer::new(fields)))
 }
 
+/// Path of the first field of `given` that `own`, which was read out of it, does not have.
+pub(super) fn unknown(given: &Value, own: &Value) -> Option<String> {
+    let below = |key: &str, rest: String| format!("{key}.{rest}");
+    match (given, own) {
+        (Value::Object(given), Value::Object(own)) => given.iter().find_map(|(key, value)| {
+            let Some(known) = own.get(key) else {
+                return Some(key.clone());
+            };
+            Some(below(key, unknown(value, known)?))
+        }),
+        (Value::Array(given), Value::Array(own)) => {
+            let mut pairs = given.iter().zip(own).enumerate();
+            pairs.find_map(|(place, (value, known))| {
+                Some(below(&place.to_string(), unknown(value, known)?))
+            })
+        }
+        _ => None,
+    }
+}
+
 /// A struct.
 struct Fields<D>(D);
 

@@ -47,18 +47,26 @@ impl TryFrom<EditParts> for Edit {
     }
 }
 
-/// Why an edit cannot be applied by this program.
+/// Reason why this program cannot apply an edit.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditFault {
     /// A name that this program does not know.
     #[error("there is no edit called '{0}' in this version of the program")]
     Unknown(String),
-    /// Fields that this kind of edit does not have, or a value out of range.
+    /// A field that this kind of edit does not have.
+    #[error("the edit '{name}' has no field '{field}'")]
+    NoField {
+        /// Name of the edit.
+        name: String,
+        /// Path of the field, its parts joined by dots.
+        field: String,
+    },
+    /// A value out of range.
     #[error("{what}")]
     Fields {
         /// Name of the edit.
         name: String,
-        /// What is wrong.
+        /// The error of the value.
         what: String,
     },
 }
@@ -103,8 +111,11 @@ impl Edit {
         let object = self.object()?;
         let known = fields::read::<T>(&object).map_err(fault)?;
         let own = serde_json::to_value(&known).map_err(fault)?;
-        match object.keys().find(|key| own.get(key).is_none()) {
-            Some(key) => Err(self.fault(format!("the edit '{}' has no field '{key}'", self.name))),
+        match fields::unknown(&Value::Object(object), &own) {
+            Some(field) => Err(EditFault::NoField {
+                name: self.name.clone(),
+                field,
+            }),
             None => Ok(known),
         }
     }
@@ -156,6 +167,13 @@ mod tests {
         seed: u64,
         #[serde(default)]
         name: Option<String>,
+        #[serde(default)]
+        parts: Vec<Part>,
+    }
+
+    #[derive(Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+    struct Part {
+        paint: String,
     }
 
     impl EditFields for Sample {
@@ -168,6 +186,7 @@ mod tests {
             x: Distance::new(0.1 + 0.2).expect("in range"),
             seed: u64::MAX,
             name: None,
+            parts: Vec::new(),
         }
     }
 
@@ -194,7 +213,6 @@ mod tests {
             ("share", json!(2.0)),
             ("share", Value::Null),
             ("seed", json!(-1)),
-            ("thickness", json!(1)),
         ] {
             let mut wrong = given.clone();
             wrong[field] = value;
@@ -204,6 +222,23 @@ mod tests {
                 "{wrong}"
             );
             assert_eq!(edit.get::<Sample>(), None);
+        }
+        for (field, value, path) in [
+            ("thickness", json!(1), "thickness"),
+            (
+                "parts",
+                json!([{ "paint": "Bone Black", "share": 1 }]),
+                "parts.0.share",
+            ),
+        ] {
+            let mut wrong = given.clone();
+            wrong[field] = value;
+            let unknown = EditFault::NoField {
+                name: "sample".to_owned(),
+                field: path.to_owned(),
+            };
+            let read = Edit::named("sample", &wrong).read::<Sample>();
+            assert_eq!(read, Err(unknown));
         }
         let other = Edit::named("other", &given);
         assert_eq!(

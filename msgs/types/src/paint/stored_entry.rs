@@ -3,9 +3,12 @@
 use std::sync::LazyLock;
 
 use super::JournalEntry;
-use crate::wire::codec::{Message as _, decode};
+use crate::wire::codec::{Message as _, decode, decode_limited};
 use crate::wire::field_table::{FieldTable, TableError};
 use crate::wire::header::{DecodeError, HEADER_BYTES, Header};
+
+/// Largest translated body, bytes: a number takes up to six times as much as text, and so does a control character.
+const TRANSLATED_MAX: usize = 8 * JournalEntry::MAX_BYTES;
 
 /// The table of the present version.
 static PRESENT: LazyLock<Result<FieldTable, TableError>> =
@@ -45,7 +48,8 @@ impl JournalEntry {
                 name: Self::NAME,
                 reason: error.to_string(),
             })?;
-        Ok((header, Self::decode_body(Self::VERSION, &body)?))
+        let entry = decode_limited::<Self, TRANSLATED_MAX>(Self::NAME, &body)?;
+        Ok((header, entry))
     }
 }
 

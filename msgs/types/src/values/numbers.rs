@@ -92,10 +92,7 @@ macro_rules! number {
         impl Serialize for $name {
             fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
                 // The digits of an f32 that are fewest are no f64's.
-                match to.is_human_readable() {
-                    true => to.serialize_f64(f64::from(self.0)),
-                    false => self.0.serialize(to),
-                }
+                if to.is_human_readable() { to.serialize_f64(f64::from(self.0)) } else { self.0.serialize(to) }
             }
         }
 

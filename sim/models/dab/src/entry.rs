@@ -10,23 +10,12 @@ use crate::step::Dab;
 /// Strength of the embossing, encoded channel by metre.
 const EMBOSS: f32 = 250.0;
 
-/// Oil paint from the tube, as the hand alone feels it: in this model paint does not flow (Baxter 2004, § 5.2).
-const RHEOLOGY: Rheology = Rheology {
-    viscosity_m2_s: 1e-2,
-    thinning: -4.6,
-    bears: 0.2,
-    yields: |thinner| {
-        let left = (1.0 - 2.0 * thinner).max(0.0);
-        left * left * left
-    },
-};
-
-/// The entry.
+/// The entry; the hand alone feels its rheology, for in this model paint does not flow.
 pub const ENTRY: ModelEntry = ModelEntry {
     shown: &Layers { emboss: EMBOSS },
     auto: Some(AutoRole::Lighter),
     panels: &PANELS,
     #[cfg(feature = "device")]
     make_on: Some(crate::device::make),
-    ..ModelEntry::new("dab", || Box::new(Dab::default()), RHEOLOGY)
+    ..ModelEntry::new("dab", || Box::new(Dab::default()), Rheology::TUBE)
 };

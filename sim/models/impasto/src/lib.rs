@@ -104,5 +104,5 @@ pub mod device;
 mod entry;
 pub mod stages;
 
-pub use entry::{ENTRY, RHEOLOGY};
+pub use entry::ENTRY;
 pub use stages::Impasto;

@@ -12,7 +12,7 @@ use crate::step::StokesPaint;
 /// levels them.
 const RHEOLOGY: Rheology = Rheology {
     viscosity_m2_s: Body::TUBE.viscosity_pa_s / DENSITY_KG_M3,
-    ..maulstick_impasto::RHEOLOGY
+    ..Rheology::TUBE
 };
 
 /// The entry.

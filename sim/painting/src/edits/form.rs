@@ -82,8 +82,8 @@ impl CommandForm {
 pub trait Form: EditFields + PaintingEdit {
     /// Its steps in scripts; none if a script cannot ask for it.
     const STEPS: &'static [StepForm];
-    /// The command line that means [`example`](Self::example), without the program; `None` if there is none.
-    const ARGUMENTS: Option<&'static str>;
+    /// Words of the command line that means [`example`](Self::example), without the program; `None` if there is none.
+    const ARGUMENTS: Option<&'static [&'static str]>;
     /// Its command; `None` if it has none of its own.
     #[cfg(feature = "cli")]
     const COMMAND: Option<CommandForm> = None;

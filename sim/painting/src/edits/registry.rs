@@ -14,8 +14,8 @@ pub struct EditEntry {
     pub name: &'static str,
     /// Its steps in scripts.
     pub steps: &'static [StepForm],
-    /// The command line that means the example.
-    pub arguments: Option<&'static str>,
+    /// Words of the command line that means the example.
+    pub arguments: Option<&'static [&'static str]>,
     /// Its command.
     #[cfg(feature = "cli")]
     pub command: Option<CommandForm>,

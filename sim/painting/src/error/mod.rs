@@ -98,6 +98,9 @@ impl EditError {
             Self::History(error) => error.advice(),
             Self::Version(error) => error.advice(),
             Self::Edit(EditFault::Unknown(_)) => Advice::say("use a newer version of the program"),
+            Self::Edit(EditFault::NoField { .. }) => {
+                Advice::say("leave the field out, or use a newer version of the program")
+            }
             Self::Edit(EditFault::Fields { .. }) | Self::Value(_) => {
                 Advice::say("choose a value in range")
             }

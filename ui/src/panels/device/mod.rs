@@ -29,7 +29,7 @@ use crate::input::keys::Action;
 use crate::panels::Panel;
 use crate::rig::state::RigState;
 use crate::widgets::context::PanelContext;
-use maulstick_client::force_history::{self, KEPT_S, size};
+use maulstick_client::force_history::{KEPT_S, size};
 use maulstick_client::state::Device;
 use maulstick_ui_kit::language::capitalized;
 use settings::Edits;
@@ -102,8 +102,8 @@ impl Panel for DevicePanel {
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        let painting = force_history::active_device(&work.rig.live, work.rig.brush_name())
-            .map(|(name, _)| name.to_owned());
+        let painting = work.rig.live.active_device(work.rig.brush_name());
+        let painting = painting.map(|(name, _)| name.to_owned());
         match &painting {
             Some(name) => {
                 ui.label(RichText::new(tr!("{device} paints", device = worded(name))).strong())

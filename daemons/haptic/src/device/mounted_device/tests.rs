@@ -12,7 +12,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// What a test does to the device, and what it was told.
+/// Actions of a test on the device, and orders to it.
 #[derive(Debug)]
 struct Bench {
     reading: Reading,

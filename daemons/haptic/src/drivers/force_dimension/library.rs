@@ -273,9 +273,10 @@ impl Dhd {
         let [x, y, z] = &mut velocity;
         // SAFETY: room for three numbers.
         let done = unsafe { (self.library.functions.velocity)(x, y, z, self.id) };
-        match done < 0 {
-            true => Err(LOST),
-            false => Ok(DVec3::from_array(velocity)),
+        if done < 0 {
+            Err(LOST)
+        } else {
+            Ok(DVec3::from_array(velocity))
         }
     }
 
@@ -295,10 +296,7 @@ impl Dhd {
         // SAFETY: numbers.
         let done =
             unsafe { (self.library.functions.set_force)(x, y, z, 0.0, 0.0, 0.0, 0.0, self.id) };
-        match done < 0 {
-            true => Err(LOST),
-            false => Ok(()),
-        }
+        if done < 0 { Err(LOST) } else { Ok(()) }
     }
 }
 

@@ -74,9 +74,10 @@ impl ForceDimension {
 
 impl Driver for ForceDimension {
     fn abilities(&self) -> Abilities {
-        let wrist = match self.has_wrist {
-            true => stylus::axes::ORIENTATION,
-            false => 0,
+        let wrist = if self.has_wrist {
+            stylus::axes::ORIENTATION
+        } else {
+            0
         };
         Abilities {
             senses: stylus::axes::POSITION
@@ -99,9 +100,10 @@ impl Driver for ForceDimension {
         let Some(pose) = self.dhd.pose()? else {
             // The library guards its time: nothing is new. A device that never says more is gone.
             self.empty += 1;
-            return match self.empty < MOST_EMPTY {
-                true => Ok(None),
-                false => Err(library::SILENT),
+            return if self.empty < MOST_EMPTY {
+                Ok(None)
+            } else {
+                Err(library::SILENT)
             };
         };
         let velocity = self.dhd.velocity()?;

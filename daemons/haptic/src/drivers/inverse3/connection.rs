@@ -104,7 +104,7 @@ impl Connection {
     /// A message that has already come, if one has.
     ///
     /// # Errors
-    /// Why there will be none.
+    /// Reason why there will be none.
     pub fn waiting(&mut self) -> Result<Option<Bytes>, End> {
         let broken = |_| End::Closed;
         let stream = self.socket.get_ref();

@@ -180,7 +180,7 @@ impl Link {
     /// The newest state.
     ///
     /// # Errors
-    /// Why there will be none any more.
+    /// Reason why there will be none any more.
     pub fn newest(&mut self) -> Result<ReceivedState, DeviceError> {
         match usize::from(self.lost.load(Ordering::Acquire)) {
             0 => Ok(*self.told.read()),
@@ -273,9 +273,10 @@ impl Exchange {
         }
         let asked = *self.wanted.read();
         let is_fresh = monotonic_ns().saturating_sub(asked.at_ns) <= FRESH_NS;
-        self.send(match is_fresh {
-            true => self.tracker.basis().to_session(asked.force),
-            false => DVec3::ZERO,
+        self.send(if is_fresh {
+            self.tracker.basis().to_session(asked.force)
+        } else {
+            DVec3::ZERO
         })?;
         let bytes = self.answer()?;
         let at_ns = monotonic_ns();

@@ -274,9 +274,10 @@ impl Update {
     /// Dialect of the service that sent this, its first message: from 3.5 it numbers sessions and has a `basis`.
     #[must_use]
     pub fn dialect(&self) -> Dialect {
-        match self.session_id.is_some() || self.devices().iter().any(Device::tells_basis) {
-            true => Dialect::Vector,
-            false => Dialect::Values,
+        if self.session_id.is_some() || self.devices().iter().any(Device::tells_basis) {
+            Dialect::Vector
+        } else {
+            Dialect::Values
         }
     }
 }

@@ -106,9 +106,10 @@ impl Inverse3 {
                 "the Inverse service at {} sees no VerseGrip {grip}",
                 address.url
             ))
-            .help(match ids.is_empty() {
-                true => "switch it on, or leave it out of `address`".to_owned(),
-                false => format!("switch it on; there are: {}", ids.join(", ")),
+            .help(if ids.is_empty() {
+                "switch it on, or leave it out of `address`".to_owned()
+            } else {
+                format!("switch it on; there are: {}", ids.join(", "))
             }));
         }
         let mut tracker = DeviceTracker::new(&id, address.grip.as_deref());
@@ -118,9 +119,10 @@ impl Inverse3 {
         }
         let link = Link::start(connection, tracker, update.dialect())
             .map_err(|error| UserError::failure(format!("no thread for the Inverse3: {error}")))?;
-        let handle = match has_grip {
-            true => stylus::axes::ORIENTATION | stylus::axes::SWITCHES,
-            false => 0,
+        let handle = if has_grip {
+            stylus::axes::ORIENTATION | stylus::axes::SWITCHES
+        } else {
+            0
         };
         Ok(Self {
             link,
@@ -243,9 +245,10 @@ impl Driver for Inverse3 {
     }
 
     fn write(&mut self, wrench: Wrench) -> Result<(), DeviceError> {
-        let force = match wrench.force.is_finite() {
-            true => wrench.force.clamp_length_max(self.max_force_n),
-            false => DVec3::ZERO,
+        let force = if wrench.force.is_finite() {
+            wrench.force.clamp_length_max(self.max_force_n)
+        } else {
+            DVec3::ZERO
         };
         self.ask(force);
         Ok(())

@@ -87,7 +87,7 @@ impl DeviceTracker {
         self.basis
     }
 
-    /// Takes in a message that came at `now_ns`, `CLOCK_MONOTONIC`.
+    /// Adds a message that came at `now_ns`, `CLOCK_MONOTONIC`.
     pub fn take(&mut self, update: &Update, now_ns: u64) -> Seen {
         let Some(device) = update.device(&self.device) else {
             return Seen::Nothing;

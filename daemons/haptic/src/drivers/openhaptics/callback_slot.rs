@@ -149,10 +149,7 @@ mod tests {
         let mut calls = 0;
         let mut work = || {
             calls += 1;
-            match calls < 3 {
-                true => Next::Again,
-                false => Next::Done,
-            }
+            if calls < 3 { Next::Again } else { Next::Done }
         };
         let codes = lend(&mut work, || {
             let inner = lend(&mut || Next::Done, || ());

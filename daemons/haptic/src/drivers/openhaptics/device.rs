@@ -126,9 +126,10 @@ fn asked<T>(session: &Session, answers: &mut Answers, none: T, ask: impl FnOnce(
     }
     let answer = ask();
     if *answers == Answers::Unknown {
-        *answers = match session.answers() {
-            true => Answers::Yes,
-            false => Answers::No,
+        *answers = if session.answers() {
+            Answers::Yes
+        } else {
+            Answers::No
         };
     }
     match *answers {
@@ -163,9 +164,10 @@ impl Driver for Device {
             }
             self.session.end(self.given);
             self.unread += 1;
-            return match self.unread < MOST_UNREAD {
-                true => Ok(None),
-                false => Err(UNREADABLE),
+            return if self.unread < MOST_UNREAD {
+                Ok(None)
+            } else {
+                Err(UNREADABLE)
             };
         };
         self.unread = 0;

@@ -89,9 +89,12 @@ fn rotation(axes: [DVec3; 3]) -> Option<DQuat> {
 
 /// The hottest motor, 0 to 1; a temperature that is no number counts as hot.
 fn hottest(temperatures: &[f64; 6]) -> f64 {
-    let hot = |temperature: &f64| match temperature.is_nan() {
-        true => 1.0,
-        false => temperature.clamp(0.0, 1.0),
+    let hot = |temperature: &f64| {
+        if temperature.is_nan() {
+            1.0
+        } else {
+            temperature.clamp(0.0, 1.0)
+        }
     };
     temperatures.iter().map(hot).fold(0.0, f64::max)
 }

@@ -147,9 +147,12 @@ fn initiate(library: &Library, name: Option<&str>) -> Result<abi::Handle, UserEr
 
 /// Abilities of the current device: the library's values, within the limits of the model.
 fn abilities(library: &Library, model: &Model) -> Abilities {
-    let known = |value: f64, unit: f64, otherwise: f64| match value.is_finite() && value > 0.0 {
-        true => value * unit,
-        false => otherwise,
+    let known = |value: f64, unit: f64, otherwise: f64| {
+        if value.is_finite() && value > 0.0 {
+            value * unit
+        } else {
+            otherwise
+        }
     };
     let nominal = |parameter: abi::Doubles<1>, unit: f64, otherwise: f64| {
         let [value] = library.doubles(parameter, f64::NAN);
@@ -172,10 +175,7 @@ fn abilities(library: &Library, model: &Model) -> Abilities {
         6 => axes::ORIENTATION,
         _ => 0,
     };
-    let twists = match max_torque_nm > 0.0 {
-        true => axes::TORQUE,
-        false => 0,
-    };
+    let twists = if max_torque_nm > 0.0 { axes::TORQUE } else { 0 };
     let continuous = abi::NOMINAL_MAX_CONTINUOUS_FORCE;
     let workspace: [f64; 6] = library.doubles(abi::USABLE_WORKSPACE_DIMENSIONS, f64::NAN);
     let is_box = (0..3).all(|axis| workspace[axis] < workspace[axis + 3])
@@ -190,10 +190,6 @@ fn abilities(library: &Library, model: &Model) -> Abilities {
         max_slew_n_s: known(impulse, BELOW_LIMIT * N_PER_MS, f64::INFINITY),
         max_speed_m_s: nominal(speed, BELOW_LIMIT * MILLI, f64::INFINITY),
         damping_n_s_m: DAMPING_N_S_M,
-        workspace_m: match is_box {
-            true => workspace,
-            false => WORKSPACE_MM,
-        }
-        .map(|edge| edge * MILLI),
+        workspace_m: if is_box { workspace } else { WORKSPACE_MM }.map(|edge| edge * MILLI),
     }
 }

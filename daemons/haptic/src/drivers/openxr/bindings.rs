@@ -53,7 +53,7 @@ pub struct Profile {
     pub path: &'static str,
     /// The part that is the trigger.
     pub trigger: &'static str,
-    /// What is pressed first, by whole hand or menu button: the first switch.
+    /// Input of the first switch: the whole hand, or the menu button.
     pub first: &'static str,
     /// The second switch, of the left and of the right hand, where there is one more.
     pub second: Option<[&'static str; 2]>,
@@ -94,5 +94,5 @@ pub const PROFILES: [Profile; 5] = [
 ];
 /// Where each of them points.
 pub const POSE: &str = "input/aim/pose";
-/// What vibrates in each of them.
+/// Output that vibrates in each of them.
 pub const MOTOR: &str = "output/haptic";

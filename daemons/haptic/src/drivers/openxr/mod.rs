@@ -95,9 +95,10 @@ impl Driver for Controller {
             self.inputs = self.runtime.inputs()?;
         }
         self.ticks = self.ticks.wrapping_add(1);
-        let place = match self.inputs.is_there {
-            true => self.runtime.pose()?,
-            false => None,
+        let place = if self.inputs.is_there {
+            self.runtime.pose()?
+        } else {
+            None
         };
         if let Some(place) = place {
             let orientation = canonical(place.orientation);

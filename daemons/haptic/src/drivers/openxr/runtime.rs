@@ -42,15 +42,15 @@ const REFUSED: DeviceError = DeviceError {
     help: "see the runtime's own log",
 };
 
-/// How long an order to vibrate lasts: two orders, so that a late one leaves no gap.
+/// Length of an order to vibrate: two orders, so that a late one leaves no gap.
 const LASTS_NS: i64 = 32_000_000;
 
 /// Inputs of a controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ControllerInputs {
-    /// Whether it is switched on, and the session is ours.
+    /// True if it is switched on, and the session is ours.
     pub is_there: bool,
-    /// How far the trigger is pulled, 0 to 1.
+    /// Pull of the trigger, 0 to 1.
     pub trigger: f64,
     /// A bit a pressed switch.
     pub switches: u32,
@@ -180,9 +180,10 @@ impl Runtime {
             let pulled = f64::from(trigger.current_state);
             Ok(ControllerInputs {
                 is_there: trigger.is_active,
-                trigger: match pulled.is_finite() {
-                    true => pulled.clamp(0.0, 1.0),
-                    false => 0.0,
+                trigger: if pulled.is_finite() {
+                    pulled.clamp(0.0, 1.0)
+                } else {
+                    0.0
                 },
                 switches,
             })
@@ -221,16 +222,15 @@ impl Runtime {
         if !self.is_running {
             return Ok(());
         }
-        let order = match amplitude > 0.0 {
-            true => {
-                let vibration = xr::HapticVibration::new()
-                    .amplitude(amplitude as f32)
-                    .frequency(xr::FREQUENCY_UNSPECIFIED)
-                    .duration(xr::Duration::from_nanos(LASTS_NS));
-                self.motor
-                    .apply_feedback(&self.session, xr::Path::NULL, &vibration)
-            }
-            false => self.motor.stop_feedback(&self.session, xr::Path::NULL),
+        let order = if amplitude > 0.0 {
+            let vibration = xr::HapticVibration::new()
+                .amplitude(amplitude as f32)
+                .frequency(xr::FREQUENCY_UNSPECIFIED)
+                .duration(xr::Duration::from_nanos(LASTS_NS));
+            self.motor
+                .apply_feedback(&self.session, xr::Path::NULL, &vibration)
+        } else {
+            self.motor.stop_feedback(&self.session, xr::Path::NULL)
         };
         order.map_err(lost)
     }

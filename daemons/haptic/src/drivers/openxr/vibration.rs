@@ -5,7 +5,7 @@ use glam::DVec3;
 
 /// Ticks between two orders to the controller, and so many more does an order last.
 pub const EVERY: u32 = 16;
-/// How fast the mean follows the force, a tick: 10 Hz.
+/// Share of the force that goes into its mean, a tick: 10 Hz.
 const FOLLOWS: f64 = 0.06;
 /// Share of a steady force that is felt.
 const STEADY: f64 = 0.3;
@@ -36,9 +36,10 @@ impl Vibration {
         if self.ticks < EVERY {
             return None;
         }
-        let amplitude = match self.strongest > LEAST {
-            true => self.strongest.min(1.0),
-            false => 0.0,
+        let amplitude = if self.strongest > LEAST {
+            self.strongest.min(1.0)
+        } else {
+            0.0
         };
         (self.ticks, self.strongest) = (0, 0.0);
         let was_on = std::mem::replace(&mut self.is_on, amplitude > 0.0);

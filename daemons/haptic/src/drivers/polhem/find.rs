@@ -34,15 +34,16 @@ pub fn only(ports: &[SerialPortInfo]) -> Result<&str, UserError> {
     match (fits.next(), fits.next()) {
         (Some(port), None) => Ok(&port.port_name),
         (None, _) => Err(
-            UserError::failure("no WoodenHaptics or Polhem stylus is plugged in").help(match ports
-                .is_empty()
-            {
-                true => "plug it in; this machine has no serial port now".to_owned(),
-                false => format!(
-                    "plug it in, or name its port as the device's `address`; there are: {}",
-                    listed(ports.iter())
-                ),
-            }),
+            UserError::failure("no WoodenHaptics or Polhem stylus is plugged in").help(
+                if ports.is_empty() {
+                    "plug it in; this machine has no serial port now".to_owned()
+                } else {
+                    format!(
+                        "plug it in, or name its port as the device's `address`; there are: {}",
+                        listed(ports.iter())
+                    )
+                },
+            ),
         ),
         (Some(_), Some(_)) => {
             let names = listed(ports.iter().filter(|port| self::fits(port)));

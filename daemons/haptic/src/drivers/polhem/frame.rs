@@ -60,9 +60,10 @@ impl Line {
     /// force beyond the device's is cut to it along its own direction, NaN counts as 0.
     #[must_use]
     pub fn force(force: DVec3, length: Length) -> Self {
-        let force = match force.is_finite() {
-            true => force.clamp_length_max(MAX_FORCE_N),
-            false => DVec3::ZERO,
+        let force = if force.is_finite() {
+            force.clamp_length_max(MAX_FORCE_N)
+        } else {
+            DVec3::ZERO
         };
         let millinewtons = force
             .to_array()

@@ -49,11 +49,10 @@ pub fn handshake(wire: &mut dyn Wire, wait: &mut dyn FnMut()) -> Result<Length, 
         }
     }
     if !is_awake {
-        return Err(match listener.foreign.is_empty() {
-            true => HandshakeError::Silent,
-            false => {
-                HandshakeError::Foreign(String::from_utf8_lossy(&listener.foreign).into_owned())
-            }
+        return Err(if listener.foreign.is_empty() {
+            HandshakeError::Silent
+        } else {
+            HandshakeError::Foreign(String::from_utf8_lossy(&listener.foreign).into_owned())
         });
     }
     for length in [Length::Short, Length::Long] {

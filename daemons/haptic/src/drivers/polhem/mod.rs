@@ -197,9 +197,10 @@ impl<W: Wire> Driver for Polhem<W> {
     }
 
     fn read(&mut self, dt: f64) -> Result<Option<Reading>, DeviceError> {
-        let step_s = match dt >= self.waited_s {
-            true => dt - self.waited_s,
-            false => dt,
+        let step_s = if dt >= self.waited_s {
+            dt - self.waited_s
+        } else {
+            dt
         };
         self.unasked_s += step_s;
         self.since_pose_s += step_s;

@@ -272,9 +272,16 @@ fn wall() -> Contact {
     wall
 }
 
+/// Distance of two states: in place, m, in velocity, m/s, and in turn, rad.
+fn distance(one: &HandleState, other: &HandleState) -> f64 {
+    (one.position - other.position).length()
+        + (one.velocity - other.velocity).length()
+        + one.orientation.angle_between(other.orientation)
+}
+
 #[test]
 fn a_turned_shifted_and_scaled_device_feels_the_desk_where_it_is() {
-    // What the hand does on the desk: the tip 4 mm below the wall, sliding along x.
+    // The tip is 4 mm below the wall, sliding along x.
     let on_desk = HandleState {
         position: DVec3::new(0.01, -0.02, 0.021),
         orientation: DQuat::IDENTITY,
@@ -317,14 +324,8 @@ fn a_turned_shifted_and_scaled_device_feels_the_desk_where_it_is() {
             seen == 2
         });
         let felt = felt.expect("the force on the hand");
-        let off = (felt.reading.handle.position - on_desk.position).length()
-            + (felt.reading.handle.velocity - on_desk.velocity).length()
-            + felt
-                .reading
-                .handle
-                .orientation
-                .angle_between(on_desk.orientation);
-        assert!(off < 1e-7, "{:?}", felt.reading.handle);
+        let handle = &felt.reading.handle;
+        assert!(distance(handle, &on_desk) < 1e-7, "{handle:?}");
         assert!((felt.tick.cap_n - 3.0).abs() < 1e-12, "the device's own");
         let written = DVec3::from_array(
             [0, 1, 2].map(|i| f64::from_bits(written[i].load(Ordering::Relaxed))),

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use maulstick_document::{
     Access, Document, DocumentError, DocumentSettings, Relocate, Relocation, make_room, unfinished,
 };
-use maulstick_files::{COMPANIONS, companion};
+use maulstick_files::{COMPANIONS, companion, is_same};
 use maulstick_painting::Sequencer;
 use maulstick_session::Autosave;
 use maulstick_types::command::advice::Advice;
@@ -90,12 +90,6 @@ fn refused(path: &Path, error: &DocumentError) -> Refusal {
         error => error.advice(),
     };
     Refusal::new(format!("{}: {error}", path.display()), advice)
-}
-
-/// True if two names lead to the same file.
-fn is_same(one: &Path, other: &Path) -> bool {
-    let real = |path: &Path| std::fs::canonicalize(path).ok();
-    one == other || real(one).is_some_and(|path| real(other) == Some(path))
 }
 
 impl DocumentHome {

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use maulstick_bus::typed::{Receiver, Sender};
 use maulstick_bus::{Qos, Queue};
-use maulstick_rig::{NodeHandle, UserError};
+use maulstick_rig::NodeHandle;
 use maulstick_types::haptics::GuideModel;
 use maulstick_types::stylus::StylusSample;
 use tokio::task::block_in_place;
@@ -12,6 +12,7 @@ use tokio::time::Instant;
 
 use super::Brush;
 use super::traced::Traced;
+use crate::error::RecorderError;
 use crate::replay::consent::Consent;
 use crate::replay::driven::Driven;
 use crate::replay::playback::{Controls, REPORT_PERIOD};
@@ -54,7 +55,7 @@ pub(super) struct Guidance<'a> {
     report: Instant,
 }
 
-/// Whether guidance goes on.
+/// Course of the guidance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Course {
     GoesOn,
@@ -68,7 +69,7 @@ impl<'a> Guidance<'a> {
         (device, brush, traced): (Driven, Brush, Traced),
         strength: f64,
         controls: Controls,
-    ) -> Result<Self, UserError> {
+    ) -> Result<Self, RecorderError> {
         let (bus, topics) = (&*member.bus, &member.topics);
         let sample = topics.sample(&device.name);
         let topic = topics.guide(&device.name);
@@ -90,7 +91,7 @@ impl<'a> Guidance<'a> {
     }
 
     /// Guides until all strokes are traced, again and again where it `repeats`, or until it is told to end.
-    pub(super) async fn guide(&mut self, repeats: bool) -> Result<(), UserError> {
+    pub(super) async fn guide(&mut self, repeats: bool) -> Result<(), RecorderError> {
         let mut due = Instant::now();
         while !self.member.stop.requested() {
             while let Some(order) = self.controls.next() {
@@ -115,7 +116,7 @@ impl<'a> Guidance<'a> {
     }
 
     /// Follows the hand and sends its guide.
-    fn follow(&mut self, now: Instant) -> Result<Course, UserError> {
+    fn follow(&mut self, now: Instant) -> Result<Course, RecorderError> {
         self.consent.renew(self.member)?;
         let Some(sample) = self.samples.newest() else {
             return Ok(Course::GoesOn);
@@ -155,7 +156,7 @@ impl<'a> Guidance<'a> {
         self.report = Instant::now();
     }
 
-    fn send(&mut self, strength: f64) -> Result<(), UserError> {
+    fn send(&mut self, strength: f64) -> Result<(), RecorderError> {
         let Some(points_m) = self.traced.piece() else {
             return Ok(());
         };

@@ -15,8 +15,8 @@ use maulstick_brush::solver::HalfSpace;
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Qos, Queue};
 use maulstick_device::brush_file;
+use maulstick_rig::NodeHandle;
 use maulstick_rig::config::BrushSection;
-use maulstick_rig::{NodeHandle, UserError};
 use maulstick_streams::Recording;
 use maulstick_streams::topic_pattern::matches;
 use maulstick_types::brush::BrushDef;
@@ -27,9 +27,11 @@ use tokio::time::timeout;
 
 use self::guiding::Guidance;
 use self::traced::{Touch, Traced};
+use crate::error::RecorderError;
 use crate::replay::driven::{Driven, PATIENCE};
 use crate::replay::playback::Controls;
 use crate::replay::settings::{Call, GuideSettings, ReplaySettings};
+use crate::work::blocking;
 
 /// Topics of the hands.
 const HANDS: &str = "stylus/*/sample";
@@ -42,7 +44,7 @@ struct Brush {
 
 impl Brush {
     /// The brush of the device, as its node has it.
-    async fn find(member: &NodeHandle, name: &str) -> Result<Self, UserError> {
+    async fn find(member: &NodeHandle, name: &str) -> Result<Self, RecorderError> {
         let topic = member.topics.brush_def(name);
         let mut defs: Receiver<BrushDef> = Receiver::new(
             &*member.bus,
@@ -67,7 +69,7 @@ impl Brush {
         let head_length_m = match timeout(PATIENCE, known).await.ok().flatten() {
             Some(length_m) => length_m,
             None => {
-                let unknown = || UserError::usage(format!("the rig has no brush '{name}'"));
+                let unknown = || RecorderError::NoBrush(name.to_owned());
                 let section: &BrushSection = section.ok_or_else(unknown)?;
                 brush_file(section)?.length_m()
             }
@@ -99,14 +101,15 @@ impl Brush {
 /// Guides the hand at a device along the recorded strokes.
 ///
 /// # Errors
-/// A [`UserError`] where no rig runs, the device is not in it, or the recording has no strokes of one hand.
+/// A [`RecorderError`] where no rig runs, the device is not in it, or the recording has no strokes of one hand.
 pub(super) async fn guide(
     call: &Call,
     own: &GuideSettings,
     controls: Controls,
-) -> Result<(), UserError> {
+) -> Result<(), RecorderError> {
     let settings = &call.settings;
-    let recording = Recording::open(&settings.recording)?;
+    let path = settings.recording.clone();
+    let recording = blocking(move || Ok(Recording::open(&path)?)).await?;
     let hand = hand(settings, &recording)?;
     let member = block_in_place(|| call.join())?;
     let done = guide_as(settings, own, controls, (recording, hand), &member).await;
@@ -121,27 +124,31 @@ async fn guide_as(
     controls: Controls,
     (mut recording, hand): (Recording, u16),
     member: &NodeHandle,
-) -> Result<(), UserError> {
+) -> Result<(), RecorderError> {
     let [first_ns, last_ns] = recording.times_ns().unwrap_or_default();
     let range_ns = settings.range_ns(last_ns.saturating_sub(first_ns))?;
     let driven = Driven::find(member, &own.device).await?;
     let brush = Brush::find(member, &driven.brush).await?;
-    let mut samples = Vec::new();
-    recording.messages(range_ns.map(|ns| first_ns + ns), &mut |message| {
-        if message.channel == hand
-            && let Ok((_, sample)) = decode::<StylusSample>(&message.bytes)
-            && sample.fault().is_none()
-        {
-            let (tip, touch) = brush.tip(&sample);
-            samples.push((message.arrived_ns.saturating_sub(first_ns), tip, touch));
-        }
-        true
-    })?;
+    let samples = blocking(move || {
+        let mut samples = Vec::new();
+        recording.messages(range_ns.map(|ns| first_ns + ns), &mut |message| {
+            if message.channel == hand
+                && let Ok((_, sample)) = decode::<StylusSample>(&message.bytes)
+                && sample.fault().is_none()
+            {
+                samples.push((message.arrived_ns.saturating_sub(first_ns), sample));
+            }
+            true
+        })?;
+        Ok(samples)
+    });
+    let samples = samples.await?.into_iter().map(|(at_ns, sample)| {
+        let (tip, touch) = brush.tip(&sample);
+        (at_ns, tip, touch)
+    });
     let traced = Traced::of(samples);
     if traced.counts()[0] == 0 {
-        return Err(UserError::usage("it has no stroke on the canvas")
-            .at(settings.place())
-            .help("a stroke is longer than 2 mm; `maulstick recording info` shows what there is"));
+        return Err(RecorderError::NoStroke(settings.recording.clone()));
     }
     let hand = (driven, brush, traced);
     let mut guidance = Guidance::new(member, hand, own.strength, controls)?;
@@ -149,7 +156,7 @@ async fn guide_as(
 }
 
 /// The channel of the one hand whose strokes guide.
-fn hand(settings: &ReplaySettings, recording: &Recording) -> Result<u16, UserError> {
+fn hand(settings: &ReplaySettings, recording: &Recording) -> Result<u16, RecorderError> {
     let is_meant = |topic: &str| {
         let mut chosen = settings.topics.iter();
         matches(HANDS, topic)
@@ -160,12 +167,13 @@ fn hand(settings: &ReplaySettings, recording: &Recording) -> Result<u16, UserErr
         .map(|(channel, topic)| (*channel, topic.name.as_str()))
         .filter(|(_, topic)| is_meant(topic))
         .collect();
-    let wrong = |what: &str| UserError::usage(what).at(settings.place());
+    let file = settings.recording.clone();
     match hands.as_slice() {
         [(channel, _)] => Ok(*channel),
-        [] => Err(wrong("it has no samples of a hand")
-            .help("record a hand that paints: `maulstick recording record -o hand.mcap`")),
-        [(_, one), ..] => Err(wrong("it has the samples of several hands, and one guides")
-            .help(format!("choose one: --topic {one}"))),
+        [] => Err(RecorderError::NoHand(file)),
+        [(_, one), ..] => {
+            let one = (*one).to_owned();
+            Err(RecorderError::SeveralHands { one, file })
+        }
     }
 }

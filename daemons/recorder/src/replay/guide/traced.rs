@@ -12,7 +12,7 @@ const TRACED: f64 = 0.8;
 /// Of strokes whose beginnings are as near as this, m, the earliest comes first.
 const AS_NEAR_M: f64 = 5e-3;
 
-/// Whether the brush touches the canvas.
+/// Contact of the brush with the canvas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Touch {
     /// It paints.
@@ -54,7 +54,7 @@ impl Stroke {
     }
 }
 
-/// What of the strokes a hand has traced.
+/// Strokes, and how far a hand has traced them.
 #[derive(Clone, Debug)]
 pub(super) struct Traced {
     strokes: Vec<Stroke>,
@@ -94,7 +94,7 @@ impl Traced {
         }
     }
 
-    /// How many strokes there are, and how many of them are traced.
+    /// Number of strokes, and of those that are traced.
     pub(super) fn counts(&self) -> [usize; 2] {
         let traced = self.is_traced.iter().filter(|traced| **traced);
         [self.strokes.len(), traced.count()]

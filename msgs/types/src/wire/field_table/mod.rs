@@ -16,7 +16,7 @@ mod json_schema;
 /// Deepest nesting of a value: a table may refer to itself.
 const DEEPEST_NESTING: usize = 32;
 
-/// Why a table or a body cannot be read.
+/// Reason why a table or a body cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TableError {
     /// The JSON is no table.

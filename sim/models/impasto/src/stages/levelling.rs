@@ -18,6 +18,7 @@ mod coarse;
 use std::ops::Range;
 
 use maulstick_canvas::window::{Area, Window};
+use maulstick_model::rheology::yield_left;
 use maulstick_num::select::{larger, smaller};
 use maulstick_num::{exp_f32, wide};
 
@@ -55,17 +56,11 @@ impl Body {
     };
 }
 
-/// Yield stress and fluidity of paint of which `thinner` is a share of 0 to 1, by those of paint from the
-/// tube: half of it takes the yield stress away.
+/// Yield stress and fluidity of paint of which `thinner` is a share of 0 to 1, by those of paint from the tube.
 #[must_use]
 #[inline(always)]
 pub fn thinned(thinner: f32) -> [f32; 2] {
-    let left = if thinner < 0.5 {
-        1.0 - 2.0 * thinner
-    } else {
-        0.0
-    };
-    [left * left * left, 1.0 / exp_f32(-THINS * thinner)]
+    [yield_left(thinner), 1.0 / exp_f32(-THINS * thinner)]
 }
 
 /// ln of how much thinner alone is more fluid than paint.

@@ -24,7 +24,7 @@ impl EditFields for Clean {
 
 impl Form for Clean {
     const STEPS: &'static [StepForm] = &[StepForm::switch("clean", &[], "{ clean = true }")];
-    const ARGUMENTS: Option<&'static str> = Some("brush|clean");
+    const ARGUMENTS: Option<&'static [&'static str]> = Some(&["brush", "clean"]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("clean", "brush"));

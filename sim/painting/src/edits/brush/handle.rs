@@ -70,7 +70,8 @@ impl Form for Handle {
         &["flow", "most_um"],
         "{ mode = \"marker\", flow = 4, most_um = 60 }",
     )];
-    const ARGUMENTS: Option<&'static str> = Some("brush|mode|marker|--flow|4|--most-um|60");
+    const ARGUMENTS: Option<&'static [&'static str]> =
+        Some(&["brush", "mode", "marker", "--flow", "4", "--most-um", "60"]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("mode", "brush"));

@@ -39,8 +39,13 @@ impl Form for Load {
         &["beside"],
         "{ load = \"Ultramarine Blue=0.6,Titanium White=0.4\", beside = \"Bone Black\" }",
     )];
-    const ARGUMENTS: Option<&'static str> =
-        Some("brush|load|Ultramarine Blue=0.6,Titanium White=0.4|--beside|Bone Black");
+    const ARGUMENTS: Option<&'static [&'static str]> = Some(&[
+        "brush",
+        "load",
+        "Ultramarine Blue=0.6,Titanium White=0.4",
+        "--beside",
+        "Bone Black",
+    ]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("load", "brush"));

@@ -61,7 +61,8 @@ impl Form for LoadFrom {
         &["surface", "thinner"],
         "{ load_from = [120, 45], thinner = 0.5 }",
     )];
-    const ARGUMENTS: Option<&'static str> = Some("brush|load-from|120|45|--thinner|0.5");
+    const ARGUMENTS: Option<&'static [&'static str]> =
+        Some(&["brush", "load-from", "120", "45", "--thinner", "0.5"]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("load-from", "brush"));

@@ -57,7 +57,8 @@ impl EditFields for Tune {
 
 impl Form for Tune {
     const STEPS: &'static [StepForm] = &[];
-    const ARGUMENTS: Option<&'static str> = Some("brush|tune|--stiffness|1.5|--wetness|0.5");
+    const ARGUMENTS: Option<&'static [&'static str]> =
+        Some(&["brush", "tune", "--stiffness", "1.5", "--wetness", "0.5"]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("tune", "brush"));

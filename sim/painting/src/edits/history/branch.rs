@@ -22,7 +22,8 @@ impl EditFields for Branch {
 
 impl Form for Branch {
     const STEPS: &'static [StepForm] = &[];
-    const ARGUMENTS: Option<&'static str> = Some("painting|versions|--branch|sketch|warm");
+    const ARGUMENTS: Option<&'static [&'static str]> =
+        Some(&["painting", "versions", "--branch", "sketch", "warm"]);
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

@@ -19,7 +19,8 @@ impl EditFields for Forget {
 
 impl Form for Forget {
     const STEPS: &'static [StepForm] = &[];
-    const ARGUMENTS: Option<&'static str> = Some("painting|versions|--forget|before the glaze");
+    const ARGUMENTS: Option<&'static [&'static str]> =
+        Some(&["painting", "versions", "--forget", "before the glaze"]);
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

@@ -20,7 +20,7 @@ impl EditFields for GoTo {
 
 impl Form for GoTo {
     const STEPS: &'static [StepForm] = &[];
-    const ARGUMENTS: Option<&'static str> = None;
+    const ARGUMENTS: Option<&'static [&'static str]> = None;
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self { step: 7 })

@@ -24,7 +24,8 @@ impl Form for Keep {
         &[],
         "{ keep = \"before the glaze\" }",
     )];
-    const ARGUMENTS: Option<&'static str> = Some("painting|versions|--keep|before the glaze");
+    const ARGUMENTS: Option<&'static [&'static str]> =
+        Some(&["painting", "versions", "--keep", "before the glaze"]);
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

@@ -24,7 +24,8 @@ impl EditFields for Redo {
 
 impl Form for Redo {
     const STEPS: &'static [StepForm] = &[];
-    const ARGUMENTS: Option<&'static str> = Some("painting|redo|--brush|main");
+    const ARGUMENTS: Option<&'static [&'static str]> =
+        Some(&["painting", "redo", "--brush", "main"]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("redo", "painting"));

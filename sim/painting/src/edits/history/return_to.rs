@@ -24,7 +24,8 @@ impl Form for ReturnTo {
         &[],
         "{ return = \"before the glaze\" }",
     )];
-    const ARGUMENTS: Option<&'static str> = Some("painting|versions|--return|before the glaze");
+    const ARGUMENTS: Option<&'static [&'static str]> =
+        Some(&["painting", "versions", "--return", "before the glaze"]);
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

@@ -23,7 +23,7 @@ impl EditFields for Undo {
 
 impl Form for Undo {
     const STEPS: &'static [StepForm] = &[StepForm::new("undo", &[], "{ undo = 1 }")];
-    const ARGUMENTS: Option<&'static str> = Some("painting|undo");
+    const ARGUMENTS: Option<&'static [&'static str]> = Some(&["painting", "undo"]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("undo", "painting"));

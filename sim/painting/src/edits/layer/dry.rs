@@ -96,8 +96,16 @@ impl Form for Dry {
         &["layer", "region", "over"],
         "{ dry = 0.5, layer = \"sky\", region = \"10,20,60x40\" }, { dry = 1.0, over = \"90s\" }",
     )];
-    const ARGUMENTS: Option<&'static str> =
-        Some("layer|dry|--share|0.5|--layer|sky|--region|10,20,60x40");
+    const ARGUMENTS: Option<&'static [&'static str]> = Some(&[
+        "layer",
+        "dry",
+        "--share",
+        "0.5",
+        "--layer",
+        "sky",
+        "--region",
+        "10,20,60x40",
+    ]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> = Some(cli::COMMAND);
 

@@ -23,7 +23,7 @@ impl EditFields for NameLayer {
 
 impl Form for NameLayer {
     const STEPS: &'static [StepForm] = &[];
-    const ARGUMENTS: Option<&'static str> = None;
+    const ARGUMENTS: Option<&'static [&'static str]> = None;
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

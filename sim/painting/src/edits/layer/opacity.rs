@@ -99,7 +99,7 @@ impl Form for Opacity {
         &["layer"],
         "{ opacity = 0.7, layer = \"sky\" }",
     )];
-    const ARGUMENTS: Option<&'static str> = Some("layer|opacity|sky|0.7");
+    const ARGUMENTS: Option<&'static [&'static str]> = Some(&["layer", "opacity", "sky", "0.7"]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("opacity", "layer"));

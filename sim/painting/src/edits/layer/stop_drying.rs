@@ -26,7 +26,7 @@ impl Form for StopDrying {
         &[],
         "{ stop_drying = true }",
     )];
-    const ARGUMENTS: Option<&'static str> = Some("layer|dry|--stop");
+    const ARGUMENTS: Option<&'static [&'static str]> = Some(&["layer", "dry", "--stop"]);
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self { surface: CANVAS })

@@ -77,7 +77,7 @@ impl Form for Wet {
         &["region"],
         "{ wet = 1 }, { wet = \"all\", region = \"10,20,60x40\" }",
     )];
-    const ARGUMENTS: Option<&'static str> = Some("layer|wet");
+    const ARGUMENTS: Option<&'static [&'static str]> = Some(&["layer", "wet"]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> = Some(crate::edits::CommandForm::of::<
         cli::WetOptions,

@@ -36,7 +36,7 @@ impl Form for Convert {
         &["surface"],
         "{ model = \"dab\" }, { model = \"impasto\", surface = 1 }",
     )];
-    const ARGUMENTS: Option<&'static str> = Some("canvas|convert|dab");
+    const ARGUMENTS: Option<&'static [&'static str]> = Some(&["canvas", "convert", "dab"]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("convert", "canvas"));

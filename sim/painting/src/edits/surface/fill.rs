@@ -95,8 +95,13 @@ impl Form for Fill {
             "{ fill_with_brush = true, um = 30 }",
         ),
     ];
-    const ARGUMENTS: Option<&'static str> =
-        Some("canvas|fill|Yellow Ochre=0.3,Titanium White=0.7|--um|40");
+    const ARGUMENTS: Option<&'static [&'static str]> = Some(&[
+        "canvas",
+        "fill",
+        "Yellow Ochre=0.3,Titanium White=0.7",
+        "--um",
+        "40",
+    ]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> = Some(crate::edits::CommandForm::of::<
         cli::FillOptions,

@@ -35,7 +35,7 @@ impl EditFields for Flip {
 
 impl Form for Flip {
     const STEPS: &'static [StepForm] = &[StepForm::switch("flip", &[], "{ flip = true }")];
-    const ARGUMENTS: Option<&'static str> = Some("canvas|flip");
+    const ARGUMENTS: Option<&'static [&'static str]> = Some(&["canvas", "flip"]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("flip", "canvas"));

@@ -81,7 +81,7 @@ impl EditFields for Ground {
 
 impl Form for Ground {
     const STEPS: &'static [StepForm] = &[StepForm::new("ground", &[], "{ ground = \"grey\" }")];
-    const ARGUMENTS: Option<&'static str> = Some("canvas|ground|grey");
+    const ARGUMENTS: Option<&'static [&'static str]> = Some(&["canvas", "ground", "grey"]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("ground", "canvas"));

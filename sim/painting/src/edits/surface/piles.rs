@@ -56,7 +56,7 @@ impl EditFields for Piles {
 
 impl Form for Piles {
     const STEPS: &'static [StepForm] = &[StepForm::new("piles", &[], "{ piles = \"last\" }")];
-    const ARGUMENTS: Option<&'static str> = Some("palette|piles|last");
+    const ARGUMENTS: Option<&'static [&'static str]> = Some(&["palette", "piles", "last"]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("piles", "palette"));

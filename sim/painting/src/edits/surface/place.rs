@@ -49,7 +49,7 @@ impl EditFields for Place {
 
 impl Form for Place {
     const STEPS: &'static [StepForm] = &[];
-    const ARGUMENTS: Option<&'static str> = None;
+    const ARGUMENTS: Option<&'static [&'static str]> = None;
 
     fn example() -> Result<Self, ValueError> {
         Self::new(CANVAS, Pose::IDENTITY, 2.0)

@@ -186,8 +186,14 @@ impl Form for Relight {
         &[],
         "{ light = { intensity = 2.0, direction = [-0.7, 0.3, 0.5] } }",
     )];
-    const ARGUMENTS: Option<&'static str> =
-        Some("canvas|light|--intensity|2|--direction|-0.7,0.3,0.5");
+    const ARGUMENTS: Option<&'static [&'static str]> = Some(&[
+        "canvas",
+        "light",
+        "--intensity",
+        "2",
+        "--direction",
+        "-0.7,0.3,0.5",
+    ]);
 
     fn example() -> Result<Self, ValueError> {
         let change = LightChange {

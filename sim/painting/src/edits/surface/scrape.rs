@@ -42,7 +42,8 @@ impl Form for Scrape {
         &["region", "surface"],
         "{ scrape = true, region = \"10,20,60x40\" }, { scrape = true, surface = 0 }",
     )];
-    const ARGUMENTS: Option<&'static str> = Some("palette|scrape|--region|10,20,60x40");
+    const ARGUMENTS: Option<&'static [&'static str]> =
+        Some(&["palette", "scrape", "--region", "10,20,60x40"]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("scrape", "palette"));

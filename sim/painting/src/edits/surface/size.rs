@@ -31,7 +31,7 @@ impl EditFields for Size {
 
 impl Form for Size {
     const STEPS: &'static [StepForm] = &[StepForm::new("stain_um", &[], "{ stain_um = 3 }")];
-    const ARGUMENTS: Option<&'static str> = Some("canvas|size|3");
+    const ARGUMENTS: Option<&'static [&'static str]> = Some(&["canvas", "size", "3"]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("size", "canvas"));

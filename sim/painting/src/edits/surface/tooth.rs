@@ -40,7 +40,8 @@ impl Form for Tooth {
         &["seed", "width_mm", "depth_um"],
         "{ tooth = \"linen\", seed = 2 }, { tooth = \"weave.png\", width_mm = 60, depth_um = 80 }",
     )];
-    const ARGUMENTS: Option<&'static str> = Some("canvas|tooth|linen|--seed|2");
+    const ARGUMENTS: Option<&'static [&'static str]> =
+        Some(&["canvas", "tooth", "linen", "--seed", "2"]);
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("tooth", "canvas"));

@@ -60,7 +60,7 @@ impl EditFields for Wells {
 
 impl Form for Wells {
     const STEPS: &'static [StepForm] = &[];
-    const ARGUMENTS: Option<&'static str> = None;
+    const ARGUMENTS: Option<&'static [&'static str]> = None;
 
     fn example() -> Result<Self, ValueError> {
         let well = Well {
