@@ -52,7 +52,6 @@
 //! is on the runtime's threads for that. The supervisor itself stays on the main thread: the kernel kills a node when the
 //! thread that started it ends. Threads of this crate's own are:
 //!
-//! - `bridge`, and `viewer` for each viewer of `topic bridge`: sockets that block;
 //! - one that `doctor` tries a real-time priority with, which the thread would keep.
 //!
 //! # Recordings

@@ -16,7 +16,7 @@ use tungstenite::http::header::SEC_WEBSOCKET_PROTOCOL;
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Error, Message, WebSocket, accept_hdr_with_config};
 
-use super::admission::{Admission, PROTOCOL, Refusal};
+use crate::admission::{Admission, PROTOCOL, Refusal};
 
 /// Messages that wait for a slow viewer; older ones are dropped.
 const BACKLOG: usize = 1024;
@@ -31,7 +31,7 @@ const STUCK: Duration = Duration::from_secs(2);
 
 /// What waits for a viewer, and what it watches.
 #[derive(Debug, Default)]
-pub(super) struct Viewer(Mutex<Waiting>);
+pub(crate) struct Viewer(Mutex<Waiting>);
 
 #[derive(Debug, Default)]
 struct Waiting {
@@ -43,7 +43,7 @@ struct Waiting {
 }
 
 /// A viewer's wish for a channel.
-pub(super) struct Wish {
+pub(crate) struct Wish {
     /// Who wishes it.
     pub viewer: Arc<Viewer>,
     /// The channel.
@@ -56,18 +56,18 @@ impl Viewer {
     }
 
     /// Has something said about the server.
-    pub(super) fn say(&self, words: &impl JsonMessage) {
+    pub(crate) fn say(&self, words: &impl JsonMessage) {
         let words = JsonMessage::to_string(words);
         self.lock().words.push_back(Message::text(words));
     }
 
     /// True if it watches a channel.
-    pub(super) fn watches(&self, channel: u64) -> bool {
+    pub(crate) fn watches(&self, channel: u64) -> bool {
         self.lock().subscriptions.contains_key(&channel)
     }
 
     /// Has a message of a channel sent, if it watches that.
-    pub(super) fn send(&self, channel: u64, time_ns: u64, json: &[u8]) {
+    pub(crate) fn send(&self, channel: u64, time_ns: u64, json: &[u8]) {
         let mut waiting = self.lock();
         let Some(subscription) = waiting.subscriptions.get(&channel) else {
             return;
@@ -108,7 +108,7 @@ impl Viewer {
     }
 
     /// Serves its connection to the end of it; `channels` says how many channels there are.
-    pub(super) fn serve(
+    pub(crate) fn serve(
         self: &Arc<Self>,
         mut socket: WebSocket<TcpStream>,
         channels: impl Fn() -> u64,
@@ -176,7 +176,7 @@ impl Write for Greeting<'_> {
 }
 
 /// Answers one that connects in vain, whatever it asks; nobody waits until it takes the answer.
-pub(super) fn turn_away(mut stream: TcpStream, why: &Refusal) {
+pub(crate) fn turn_away(mut stream: TcpStream, why: &Refusal) {
     let response = why.response();
     let mut answer = Vec::new();
     if write_response(&mut answer, &response).is_ok() {
@@ -190,7 +190,7 @@ pub(super) fn turn_away(mut stream: TcpStream, why: &Refusal) {
 ///
 /// # Errors
 /// Why it is not, or nothing where it says nothing that is understood.
-pub(super) fn greet(
+pub(crate) fn greet(
     stream: TcpStream,
     admission: &Admission,
 ) -> Result<WebSocket<TcpStream>, Option<Refusal>> {

@@ -1,27 +1,16 @@
-//! `maulstick topic bridge`: the streams of a running rig for Foxglove, by a process of its own that no node waits for.
-//!
-//! | module | holds |
-//! | --- | --- |
-//! | [`admission`] | who may watch |
-//! | [`token`] | the secret in the address |
-//! | [`viewer`] | one who watches |
-//! | [`foxglove_server`] | what they are sent |
-
-mod admission;
-mod foxglove_server;
-mod token;
-mod viewer;
+//! `maulstick topic bridge`: the streams of a running rig for Foxglove.
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use maulstick_bridge::admission::{Admission, FOXGLOVE, Refusals, origin};
+use maulstick_bridge::foxglove_server::FoxgloveServer;
+use maulstick_bridge::token;
 use maulstick_recorder::Listener;
 use maulstick_rig::UserError;
 use maulstick_rig::log::print_beside;
 
-use self::admission::{Admission, FOXGLOVE, Refusals, origin};
-use self::foxglove_server::FoxgloveServer;
 use crate::commands::client::Target;
 use crate::commands::say;
 

@@ -17,8 +17,8 @@ use maulstick_streams::catalogue::KnownTables;
 use maulstick_streams::{RateLimit, json_channel};
 use maulstick_types::HEADER_BYTES;
 
-use super::admission::{Admission, Refusal};
-use super::viewer::{Viewer, Wish, greet, turn_away};
+use crate::admission::{Admission, Refusal};
+use crate::viewer::{Viewer, Wish, greet, turn_away};
 
 /// Most connections at a time.
 const MOST: usize = 32;
@@ -27,7 +27,7 @@ const MOST: usize = 32;
 const PAUSE: Duration = Duration::from_millis(100);
 
 /// A server of messages. It takes nothing from its viewers.
-pub(super) struct FoxgloveServer {
+pub struct FoxgloveServer {
     port: u16,
     lobby: Arc<Lobby>,
     tables: KnownTables,
@@ -134,7 +134,7 @@ impl FoxgloveServer {
     ///
     /// # Errors
     /// A [`UserError`] where the port is taken, or the address is not this machine's.
-    pub(super) fn start(
+    pub fn start(
         name: &str,
         at: SocketAddr,
         hz: u32,
@@ -172,17 +172,17 @@ impl FoxgloveServer {
     }
 
     /// The port at which it serves.
-    pub(super) fn port(&self) -> u16 {
+    pub fn port(&self) -> u16 {
         self.port
     }
 
     /// Those who were refused since the last call.
-    pub(super) fn refusals(&self) -> impl Iterator<Item = Refusal> {
+    pub fn refusals(&self) -> impl Iterator<Item = Refusal> {
         self.refusals.try_iter()
     }
 
     /// Sends a message to those who watch its topic, if that has not sent its share already.
-    pub(super) fn send(&mut self, received: ReceivedMessage) {
+    pub fn send(&mut self, received: ReceivedMessage) {
         if let Some(channel) = self.channel(&received) {
             let mut viewers = self.lobby.lock().viewers.clone();
             viewers.retain(|viewer| viewer.watches(channel));
@@ -197,7 +197,7 @@ impl FoxgloveServer {
     }
 
     /// Sends new watchers of a topic the message that is kept for late joiners.
-    pub(super) fn greet(&mut self) {
+    pub fn greet(&mut self) {
         while let Ok(Wish { viewer, channel }) = self.wishes.try_recv() {
             let people = self.lobby.lock();
             let topic = people.channels.get(channel as usize);

@@ -10,9 +10,9 @@ use tungstenite::http::header::{ORIGIN, SEC_WEBSOCKET_PROTOCOL};
 use tungstenite::http::{Response, StatusCode};
 
 /// The protocol of the viewers.
-pub(super) const PROTOCOL: &str = "foxglove.sdk.v1";
+pub const PROTOCOL: &str = "foxglove.sdk.v1";
 /// Origins of Foxglove's own pages: in a browser, and in its program for desktops.
-pub(super) const FOXGLOVE: [&str; 2] = ["https://app.foxglove.dev", "file://"];
+pub const FOXGLOVE: [&str; 2] = ["https://app.foxglove.dev", "file://"];
 /// Most characters of an origin that is said.
 const LONGEST: usize = 100;
 /// Time in which the same refusal is said once.
@@ -22,7 +22,7 @@ const KINDS: usize = 64;
 
 /// What admits a viewer.
 #[derive(Clone, Debug)]
-pub(super) struct Admission {
+pub struct Admission {
     /// The secret that its address has; none is asked for without one.
     pub token: Option<String>,
     /// Origins of pages that may watch; a program that is no browser has none.
@@ -31,7 +31,7 @@ pub(super) struct Admission {
 
 /// Why a viewer may not watch.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Refusal {
+pub enum Refusal {
     /// A page of another origin.
     Origin(String),
     /// No token, or another one.
@@ -62,7 +62,7 @@ impl fmt::Display for Refusal {
 ///
 /// # Errors
 /// What is wrong, in words.
-pub(super) fn origin(text: &str) -> Result<String, String> {
+pub fn origin(text: &str) -> Result<String, String> {
     let is_sound = text.split_once("://").is_some_and(|(scheme, host)| {
         !scheme.is_empty() && !host.contains('/') && !text.contains(char::is_whitespace)
     });
@@ -79,7 +79,7 @@ impl Admission {
     ///
     /// # Errors
     /// The [`Refusal`].
-    pub(super) fn judge(&self, request: &Request) -> Result<(), Refusal> {
+    pub fn judge(&self, request: &Request) -> Result<(), Refusal> {
         let headers = request.headers();
         // More than one is what no browser sends.
         for origin in headers.get_all(ORIGIN) {
@@ -116,7 +116,7 @@ fn is_same(one: &str, other: &str) -> bool {
 
 impl Refusal {
     /// The answer of HTTP.
-    pub(super) fn response(&self) -> ErrorResponse {
+    pub fn response(&self) -> ErrorResponse {
         let mut response = Response::new(Some(self.to_string()));
         *response.status_mut() = match self {
             Self::Origin(_) | Self::Token => StatusCode::FORBIDDEN,
@@ -129,11 +129,11 @@ impl Refusal {
 
 /// Refusals as they are said: each once in a while, with how many there were since.
 #[derive(Debug, Default)]
-pub(super) struct Refusals(BTreeMap<Refusal, (Instant, u64)>);
+pub struct Refusals(BTreeMap<Refusal, (Instant, u64)>);
 
 impl Refusals {
     /// The line of a refusal, if it is to be said now.
-    pub(super) fn line(&mut self, refusal: &Refusal, now: Instant) -> Option<String> {
+    pub fn line(&mut self, refusal: &Refusal, now: Instant) -> Option<String> {
         if let Some((said, more)) = self.0.get_mut(refusal) {
             if now < *said + QUIET {
                 *more += 1;

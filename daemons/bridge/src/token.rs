@@ -17,7 +17,7 @@ const BYTES: usize = 16;
 ///
 /// # Errors
 /// A [`UserError`] where it cannot be read or kept.
-pub(super) fn own() -> Result<String, UserError> {
+pub fn own() -> Result<String, UserError> {
     let folders = directories::ProjectDirs::from("", "", "maulstick").ok_or_else(|| {
         UserError::failure("there is no folder for the settings of this user")
             .help("set HOME to a folder of your own, or let every program watch: --no-token")
