@@ -2,15 +2,15 @@
 //! its ports.
 
 use std::collections::BTreeMap;
-use std::fmt;
 use std::time::{Duration, Instant};
 
-use tungstenite::handshake::server::{ErrorResponse, Request};
-use tungstenite::http::header::{ORIGIN, SEC_WEBSOCKET_PROTOCOL};
-use tungstenite::http::{Response, StatusCode};
+use thiserror::Error;
+use tokio_tungstenite::tungstenite::handshake::server::{ErrorResponse, Request};
+use tokio_tungstenite::tungstenite::http::header::{ORIGIN, SEC_WEBSOCKET_PROTOCOL};
+use tokio_tungstenite::tungstenite::http::{Response, StatusCode};
 
 /// The protocol of the viewers.
-pub const PROTOCOL: &str = "foxglove.sdk.v1";
+pub(crate) const PROTOCOL: &str = "foxglove.sdk.v1";
 /// Origins of Foxglove's own pages: in a browser, and in its program for desktops.
 pub const FOXGLOVE: [&str; 2] = ["https://app.foxglove.dev", "file://"];
 /// Most characters of an origin that is said.
@@ -30,47 +30,39 @@ pub struct Admission {
 }
 
 /// Why a viewer may not watch.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Refusal {
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Error)]
+pub(crate) enum Refusal {
     /// A page of another origin.
+    #[error("a page of {0} may not watch; --origin {0} lets it")]
     Origin(String),
     /// No token, or another one.
+    #[error("a program without the token of the address may not watch")]
     Token,
     /// It does not speak the protocol.
+    #[error("a program that does not speak {PROTOCOL} cannot watch")]
     Protocol,
     /// There are too many.
+    #[error("there are too many viewers")]
     Full,
 }
 
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Origin(origin) => {
-                write!(
-                    f,
-                    "a page of {origin} may not watch; --origin {origin} lets it"
-                )
-            }
-            Self::Token => f.write_str("a program without the token of the address may not watch"),
-            Self::Protocol => write!(f, "a program that does not speak {PROTOCOL} cannot watch"),
-            Self::Full => f.write_str("there are too many viewers"),
-        }
-    }
-}
+/// Text that is no origin.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("'{0}' is no origin, such as http://localhost:8080")]
+pub struct NoOrigin(String);
 
 /// Reads an origin as browsers send it: a scheme and a host, with its port.
 ///
 /// # Errors
-/// What is wrong, in words.
-pub fn origin(text: &str) -> Result<String, String> {
+/// [`NoOrigin`] for another text.
+pub fn origin(text: &str) -> Result<String, NoOrigin> {
     let is_sound = text.split_once("://").is_some_and(|(scheme, host)| {
         !scheme.is_empty() && !host.contains('/') && !text.contains(char::is_whitespace)
     });
-    match is_sound {
-        true => Ok(text.to_ascii_lowercase()),
-        false => Err(format!(
-            "'{text}' is no origin, such as http://localhost:8080"
-        )),
+    if is_sound {
+        Ok(text.to_ascii_lowercase())
+    } else {
+        Err(NoOrigin(text.to_owned()))
     }
 }
 
@@ -79,7 +71,7 @@ impl Admission {
     ///
     /// # Errors
     /// The [`Refusal`].
-    pub fn judge(&self, request: &Request) -> Result<(), Refusal> {
+    pub(crate) fn judge(&self, request: &Request) -> Result<(), Refusal> {
         let headers = request.headers();
         // More than one is what no browser sends.
         for origin in headers.get_all(ORIGIN) {
@@ -101,9 +93,10 @@ impl Admission {
             .get_all(SEC_WEBSOCKET_PROTOCOL)
             .iter()
             .flat_map(|header| header.to_str().unwrap_or_default().split(','));
-        match offered.any(|offered| offered.trim() == PROTOCOL) {
-            true => Ok(()),
-            false => Err(Refusal::Protocol),
+        if offered.any(|offered| offered.trim() == PROTOCOL) {
+            Ok(())
+        } else {
+            Err(Refusal::Protocol)
         }
     }
 }
@@ -116,7 +109,7 @@ fn is_same(one: &str, other: &str) -> bool {
 
 impl Refusal {
     /// The answer of HTTP.
-    pub fn response(&self) -> ErrorResponse {
+    pub(crate) fn response(&self) -> ErrorResponse {
         let mut response = Response::new(Some(self.to_string()));
         *response.status_mut() = match self {
             Self::Origin(_) | Self::Token => StatusCode::FORBIDDEN,
@@ -129,11 +122,11 @@ impl Refusal {
 
 /// Refusals as they are said: each once in a while, with how many there were since.
 #[derive(Debug, Default)]
-pub struct Refusals(BTreeMap<Refusal, (Instant, u64)>);
+pub(crate) struct Refusals(BTreeMap<Refusal, (Instant, u64)>);
 
 impl Refusals {
     /// The line of a refusal, if it is to be said now.
-    pub fn line(&mut self, refusal: &Refusal, now: Instant) -> Option<String> {
+    pub(crate) fn line(&mut self, refusal: &Refusal, now: Instant) -> Option<String> {
         if let Some((said, more)) = self.0.get_mut(refusal) {
             if now < *said + QUIET {
                 *more += 1;
@@ -155,7 +148,7 @@ impl Refusals {
 
 #[cfg(test)]
 mod tests {
-    use tungstenite::http::Request as HttpRequest;
+    use tokio_tungstenite::tungstenite::http::Request as HttpRequest;
 
     use super::*;
 

@@ -1,37 +1,28 @@
-//! One viewer of the bridge: its connection, on a thread of its own, and what waits to be sent to it.
+//! One viewer of the bridge: a task that obeys it, and what waits to be sent to it.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::io::{ErrorKind, Read, Write};
-use std::net::TcpStream;
-use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
 
 use foxglove::ws_protocol::client::ClientMessage;
 use foxglove::ws_protocol::server::MessageData;
 use foxglove::ws_protocol::{BinaryMessage as _, JsonMessage};
-use tungstenite::handshake::server::{ErrorResponse, Request, Response, write_response};
-use tungstenite::http::HeaderValue;
-use tungstenite::http::header::SEC_WEBSOCKET_PROTOCOL;
-use tungstenite::protocol::{Role, WebSocketConfig};
-use tungstenite::{Error, Message, WebSocket, accept_hdr_with_config};
+use futures_util::{SinkExt as _, StreamExt as _};
+use tokio::sync::Notify;
+use tokio::sync::mpsc::Sender;
+use tokio_tungstenite::tungstenite::{Error, Message};
 
-use crate::admission::{Admission, PROTOCOL, Refusal};
+use crate::connection::Connection;
 
 /// Messages that wait for a slow viewer; older ones are dropped.
 const BACKLOG: usize = 1024;
-/// Bytes of the largest message of a viewer.
-const LARGEST: usize = 1 << 20;
-/// Longest time until a viewer that connects is admitted: until then another user may have its place.
-const GREETING: Duration = Duration::from_secs(2);
-/// Longest wait for a viewer's message while others may have to be sent.
-const TURN: Duration = Duration::from_millis(10);
-/// A viewer that takes nothing for so long is dropped.
-const STUCK: Duration = Duration::from_secs(2);
 
 /// What waits for a viewer, and what it watches.
 #[derive(Debug, Default)]
-pub(crate) struct Viewer(Mutex<Waiting>);
+pub(crate) struct Viewer {
+    waiting: Mutex<Waiting>,
+    /// Signalled when something waits.
+    news: Notify,
+}
 
 #[derive(Debug, Default)]
 struct Waiting {
@@ -45,20 +36,21 @@ struct Waiting {
 /// A viewer's wish for a channel.
 pub(crate) struct Wish {
     /// Who wishes it.
-    pub viewer: Arc<Viewer>,
+    pub(crate) viewer: Arc<Viewer>,
     /// The channel.
-    pub channel: u64,
+    pub(crate) channel: u64,
 }
 
 impl Viewer {
     fn lock(&self) -> MutexGuard<'_, Waiting> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Has something said about the server.
     pub(crate) fn say(&self, words: &impl JsonMessage) {
         let words = JsonMessage::to_string(words);
         self.lock().words.push_back(Message::text(words));
+        self.news.notify_one();
     }
 
     /// True if it watches a channel.
@@ -77,25 +69,22 @@ impl Viewer {
         while waiting.data.len() > BACKLOG {
             waiting.data.pop_front();
         }
+        self.news.notify_one();
     }
 
     /// Carries out what it asks for; of channels there are `channels`.
-    fn obey(self: &Arc<Self>, message: &Message, channels: u64, wishes: &Sender<Wish>) {
-        let parsed = match message {
-            Message::Text(text) => ClientMessage::parse_json(text),
-            _ => return,
+    async fn obey(self: &Arc<Self>, message: &Message, channels: u64, wishes: &Sender<Wish>) {
+        let Message::Text(text) = message else {
+            return;
         };
-        match parsed {
+        match ClientMessage::parse_json(text) {
             Ok(ClientMessage::Subscribe(asked)) => {
-                for own in asked
-                    .subscriptions
-                    .iter()
-                    .filter(|own| own.channel_id < channels)
-                {
+                let asked = asked.subscriptions.iter();
+                for own in asked.filter(|own| own.channel_id < channels) {
                     self.lock().subscriptions.insert(own.channel_id, own.id);
                     let (viewer, channel) = (Arc::clone(self), own.channel_id);
                     // Without a receiver the server ends.
-                    wishes.send(Wish { viewer, channel }).ok();
+                    wishes.send(Wish { viewer, channel }).await.ok();
                 }
             }
             Ok(ClientMessage::Unsubscribe(asked)) => {
@@ -108,185 +97,37 @@ impl Viewer {
     }
 
     /// Serves its connection to the end of it; `channels` says how many channels there are.
-    pub(crate) fn serve(
+    pub(crate) async fn serve(
         self: &Arc<Self>,
-        mut socket: WebSocket<TcpStream>,
+        mut connection: Connection,
         channels: impl Fn() -> u64,
         wishes: &Sender<Wish>,
     ) {
         loop {
-            match socket.read() {
-                Ok(message) => self.obey(&message, channels(), wishes),
-                Err(Error::Io(error)) if is_pause(&error) => {}
-                Err(_) => return,
+            tokio::select! {
+                message = connection.next() => match message {
+                    Some(Ok(message)) => self.obey(&message, channels(), wishes).await,
+                    Some(Err(_)) | None => return,
+                },
+                () = self.news.notified() => {}
             }
-            let mut waiting = self.lock();
-            let words = std::mem::take(&mut waiting.words);
-            let data = std::mem::take(&mut waiting.data);
-            drop(waiting);
-            for message in words.into_iter().chain(data) {
-                if socket.write(message).is_err() {
-                    return;
-                }
-            }
-            if socket.flush().is_err() {
+            if self.send_waiting(&mut connection).await.is_err() {
                 return;
             }
         }
     }
-}
 
-fn is_pause(error: &std::io::Error) -> bool {
-    use std::io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
-    matches!(error.kind(), WouldBlock | TimedOut | Interrupted)
-}
+    /// Takes what waits, in the order in which it is sent.
+    fn take_waiting(&self) -> impl Iterator<Item = Message> + use<> {
+        let mut waiting = self.lock();
+        let words = std::mem::take(&mut waiting.words);
+        words.into_iter().chain(std::mem::take(&mut waiting.data))
+    }
 
-/// Connection of one that is not yet admitted: all that is read and written ends by one time.
-struct Greeting<'a> {
-    stream: &'a TcpStream,
-    until: Instant,
-}
-
-impl Greeting<'_> {
-    /// The time that is left; none is an error, for a socket takes 0 for no limit.
-    fn left(&self) -> std::io::Result<Option<Duration>> {
-        match self.until.saturating_duration_since(Instant::now()) {
-            Duration::ZERO => Err(ErrorKind::TimedOut.into()),
-            left => Ok(Some(left)),
+    async fn send_waiting(&self, connection: &mut Connection) -> Result<(), Error> {
+        for message in self.take_waiting() {
+            connection.feed(message).await?;
         }
-    }
-}
-
-impl Read for Greeting<'_> {
-    fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
-        self.stream.set_read_timeout(self.left()?)?;
-        self.stream.read(bytes)
-    }
-}
-
-impl Write for Greeting<'_> {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.stream.set_write_timeout(self.left()?)?;
-        self.stream.write(bytes)
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        self.stream.flush()
-    }
-}
-
-/// Answers one that connects in vain, whatever it asks; nobody waits until it takes the answer.
-pub(crate) fn turn_away(mut stream: TcpStream, why: &Refusal) {
-    let response = why.response();
-    let mut answer = Vec::new();
-    if write_response(&mut answer, &response).is_ok() {
-        answer.extend_from_slice(response.body().as_deref().unwrap_or_default().as_bytes());
-        let sent = stream.set_nonblocking(true);
-        sent.and_then(|()| stream.write_all(&answer)).ok();
-    }
-}
-
-/// Greets one that connects: a viewer's connection, where it is admitted.
-///
-/// # Errors
-/// Why it is not, or nothing where it says nothing that is understood.
-pub(crate) fn greet(
-    stream: TcpStream,
-    admission: &Admission,
-) -> Result<WebSocket<TcpStream>, Option<Refusal>> {
-    let mut refusal = None;
-    #[allow(
-        clippy::result_large_err,
-        reason = "the library's own type of a refusal"
-    )]
-    let judge = |request: &Request, mut response: Response| -> Result<Response, ErrorResponse> {
-        match admission.judge(request) {
-            Ok(()) => {
-                let protocol = HeaderValue::from_static(PROTOCOL);
-                response
-                    .headers_mut()
-                    .insert(SEC_WEBSOCKET_PROTOCOL, protocol);
-                Ok(response)
-            }
-            Err(why) => {
-                let response = why.response();
-                refusal = Some(why);
-                Err(response)
-            }
-        }
-    };
-    let config = WebSocketConfig::default()
-        .max_message_size(Some(LARGEST))
-        .max_frame_size(Some(LARGEST));
-    let greeting = Greeting {
-        stream: &stream,
-        until: Instant::now() + GREETING,
-    };
-    let is_admitted = accept_hdr_with_config(greeting, judge, Some(config)).is_ok();
-    if !is_admitted {
-        return Err(refusal);
-    }
-    stream
-        .set_read_timeout(Some(TURN))
-        .and_then(|()| stream.set_write_timeout(Some(STUCK)))
-        .map_err(|_| None)?;
-    // What came with the request would have been refused, so nothing of it is lost.
-    Ok(WebSocket::from_raw_socket(
-        stream,
-        Role::Server,
-        Some(config),
-    ))
-}
-
-#[cfg(test)]
-mod tests {
-    use std::net::TcpListener;
-
-    use super::*;
-
-    /// Time of a greeting.
-    const SHORT: Duration = Duration::from_millis(50);
-
-    /// Both ends of a connection.
-    fn connected() -> [TcpStream; 2] {
-        let listener = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
-        let at = listener.local_addr().expect("an address");
-        let client = TcpStream::connect(at).expect("connected");
-        [client, listener.accept().expect("accepted").0]
-    }
-
-    #[test]
-    fn one_who_trickles_bytes_is_not_greeted_for_longer_than_one_who_is_silent() {
-        let [mut client, stream] = connected();
-        let mut greeting = Greeting {
-            stream: &stream,
-            until: Instant::now() + SHORT,
-        };
-        let ended = loop {
-            assert!(Instant::now() < greeting.until + Duration::from_secs(60));
-            client.write_all(b"G").expect("sent");
-            if let Err(error) = greeting.read(&mut [0]) {
-                break error;
-            }
-        };
-        assert!(is_pause(&ended) && Instant::now() >= greeting.until);
-        assert!(greeting.write(b"late").is_err());
-        let [_silent, stream] = connected();
-        let mut greeting = Greeting {
-            stream: &stream,
-            until: Instant::now() + SHORT,
-        };
-        assert!(is_pause(&greeting.read(&mut [0]).expect_err("silence")));
-    }
-
-    #[test]
-    fn one_for_whom_there_is_no_place_has_an_answer() {
-        let [mut client, stream] = connected();
-        turn_away(stream, &Refusal::Full);
-        let mut answer = String::new();
-        client.read_to_string(&mut answer).expect("an answer");
-        let (head, why) = answer.split_once("\r\n\r\n").expect("a body");
-        assert!(head.starts_with("HTTP/1.1 503 "), "{head}");
-        assert_eq!(why, Refusal::Full.to_string());
+        connection.flush().await
     }
 }

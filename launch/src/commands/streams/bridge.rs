@@ -1,18 +1,17 @@
 //! `maulstick topic bridge`: the streams of a running rig for Foxglove.
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
-use std::time::{Duration, Instant};
 
 use clap::Args;
-use maulstick_bridge::admission::{Admission, FOXGLOVE, Refusals, origin};
-use maulstick_bridge::foxglove_server::FoxgloveServer;
-use maulstick_bridge::token;
+use maulstick_bridge::admission::{Admission, FOXGLOVE, origin};
+use maulstick_bridge::{Bridge, BridgeSettings, token};
 use maulstick_recorder::Listener;
 use maulstick_rig::UserError;
 use maulstick_rig::log::print_beside;
 
 use crate::commands::client::Target;
-use crate::commands::say;
+use crate::commands::{print_line, say};
+use crate::runtime::block_on;
 
 /// Options of `maulstick topic bridge`.
 #[derive(Args, Clone, Debug)]
@@ -40,52 +39,33 @@ pub struct BridgeOptions {
     target: Target,
 }
 
-/// A viewer that begins to watch a topic waits no longer for the message that is kept.
-const SOON: Duration = Duration::from_millis(100);
-/// Time between two looks whether the rig runs.
-const LOOK: Duration = Duration::from_secs(1);
-
 /// Serves until Ctrl-C, or the end of the rig.
 ///
 /// # Errors
 /// A [`UserError`] where no rig runs, or the port is taken.
 pub(super) fn run(options: &BridgeOptions) -> Result<i32, UserError> {
-    let BridgeOptions { address, port, .. } = *options;
     print_beside();
-    let mut listener = Listener::open(options.target.rig(), &options.topic)?;
-    let name = format!("maulstick {}", options.target.rig());
-    let token = match options.no_token {
-        true => None,
-        false => Some(token::own()?),
+    let listener = Listener::open(options.target.rig(), &options.topic)?;
+    let token = if options.no_token {
+        None
+    } else {
+        Some(token::own()?)
     };
     let known = FOXGLOVE.iter().map(|origin| (*origin).to_owned());
-    let admission = Admission {
-        token: token.clone(),
-        origins: known.chain(options.origin.iter().cloned()).collect(),
+    let secret = token.as_ref().map(|token| format!("/?token={token}"));
+    let settings = BridgeSettings {
+        name: format!("maulstick {}", options.target.rig()),
+        address: SocketAddr::new(options.address, options.port),
+        hz: options.hz,
+        admission: Admission {
+            token,
+            origins: known.chain(options.origin.iter().cloned()).collect(),
+        },
     };
-    let at = SocketAddr::new(address, port);
-    let mut server = FoxgloveServer::start(&name, at, options.hz, admission)?;
-    let served = SocketAddr::new(address, server.port());
-    let secret = token.map_or_else(String::new, |token| format!("/?token={token}"));
-    say!("Foxglove opens ws://{served}{secret}; Ctrl-C ends it");
-    let mut look_at = Instant::now() + LOOK;
-    let mut refusals = Refusals::default();
-    while !listener.is_over() {
-        if let Some(received) = listener.next(Instant::now() + SOON) {
-            server.send(received);
-        }
-        server.greet();
-        for refusal in server.refusals() {
-            if let Some(line) = refusals.line(&refusal, Instant::now()) {
-                say!("{line}");
-            }
-        }
-        if Instant::now() >= look_at {
-            look_at = Instant::now() + LOOK;
-            if !listener.has_rig() {
-                break;
-            }
-        }
-    }
-    Ok(0)
+    block_on(async {
+        let bridge = Bridge::open(listener, settings).await?;
+        let (served, secret) = (bridge.address(), secret.unwrap_or_default());
+        say!("Foxglove opens ws://{served}{secret}; Ctrl-C ends it");
+        bridge.serve(print_line).await.map(|()| 0)
+    })
 }
