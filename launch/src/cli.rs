@@ -226,7 +226,7 @@ mod tests {
     use maulstick_types::scene::Light;
 
     use super::*;
-    use crate::lamp::changed;
+    use maulstick_painting_setup::lamp::changed;
 
     #[test]
     fn the_command_line_is_consistent() {

@@ -9,25 +9,13 @@
 //! | [`processes`] | the processes of a rig |
 //! | [`page`] | pictures made of patches, pictures and words |
 //! | [`plot`] | curves over two axes |
-//! | [`destination`] | the display or file that colours go to: profile and gamut |
-//! | [`viewing`] | options of light, observer and rule |
 //! | [`swatch`] | colours in the terminal |
-//! | [`backend`] | backend of the paint's steps |
-//! | [`cells`] | the side of the cells that pictures are painted with |
 //! | [`doctor`] | what of this machine keeps a rig from painting well |
-//! | [`document`] | paintings in files |
 //! | [`easel`] | a painting at which a script is followed |
-//! | [`duration`], [`ground`], [`tooth`] | times, grounds and teeth as a painter names them |
-//! | [`kit`] | setup of a take: embedded into it, and extracted from it |
-//! | [`lamp`] | changes of the light |
-//! | [`memory`] | memory that a command allocates at once |
-//! | [`picture`] | pictures that a command reads |
-//! | [`outputs`] | files that are written; none replaces one that is read |
 //! | [`runtime`] | the tokio runtime of commands that wait for many things at once |
 //! | [`script`] | a day at the easel, a step after the other |
 //! | [`paintings`] | the bundled paintings |
 //! | [`panics`] | panics as errors that a user can read |
-//! | [`performance`] | setup that `render` and `up --play` share: take, brush, loads, canvas |
 //!
 //! # The rig
 //!
@@ -69,10 +57,8 @@ pub mod cli;
 pub mod commands;
 pub mod doctor;
 mod figures;
-pub mod outputs;
 pub mod paintings;
 pub mod panics;
-pub mod performance;
 pub mod processes;
 pub mod runtime;
 pub mod script;
@@ -80,10 +66,7 @@ mod setup;
 pub mod up;
 
 pub use figures::{page, plot, swatch};
-pub use setup::{
-    backend, cells, destination, document, duration, easel, ground, kit, lamp, memory, picture,
-    tooth, viewing,
-};
+pub use setup::{duration, easel};
 
 use maulstick_rig::UserError;
 use maulstick_rig::log::{flush, say};

@@ -12,10 +12,10 @@ use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_rig::UserError;
 use maulstick_session::Offline;
 
-use crate::cells::SheetCells;
 use crate::easel::Easel;
-use crate::performance::refused;
 use crate::script::Script;
+use maulstick_painting_setup::cells::SheetCells;
+use maulstick_painting_setup::refused;
 
 /// Names and scripts of the paintings.
 pub const PAINTINGS: [(&str, &str); 3] = [

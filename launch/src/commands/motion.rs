@@ -8,7 +8,7 @@ use maulstick_motion::MotionError;
 use maulstick_rig::UserError;
 use maulstick_types::stylus::StylusPose;
 
-use crate::performance::of_a_brush;
+use maulstick_painting_setup::of_a_brush;
 
 /// Length of the head of a 6-DOF stylus.
 #[derive(Args, Clone, Copy, Debug)]

@@ -20,11 +20,11 @@ use super::Act;
 use super::entries::file;
 use super::steps::Step;
 use super::stroke::{Stroke, Turn};
-use crate::ground::GroundFile;
-use crate::lamp::changed;
-use crate::outputs::UsedFile;
-use crate::performance::{brush_file, mixture_of, refused};
-use crate::tooth::ToothPicture;
+use maulstick_painting_setup::ground::GroundFile;
+use maulstick_painting_setup::lamp::changed;
+use maulstick_painting_setup::outputs::UsedFile;
+use maulstick_painting_setup::tooth::ToothPicture;
+use maulstick_painting_setup::{brush_file, mixture_of, refused};
 
 /// Lean of a stroke's handle for which nothing is said, degrees.
 const LEAN_DEG: f64 = 25.0;

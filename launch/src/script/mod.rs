@@ -45,9 +45,9 @@ use toml::de::DeTable;
 use self::entries::Source;
 use self::stroke::Stroke;
 use crate::duration::time_ns;
-use crate::ground::GroundFile;
-use crate::outputs::UsedFile;
-use crate::tooth::ToothPicture;
+use maulstick_painting_setup::ground::GroundFile;
+use maulstick_painting_setup::outputs::UsedFile;
+use maulstick_painting_setup::tooth::ToothPicture;
 
 /// Action of a step.
 #[derive(Clone, Debug)]

@@ -17,11 +17,11 @@ use maulstick_types::stylus::StylusSample;
 use maulstick_types::values::{BrushName, MaterialName};
 
 use crate::duration::time_ns;
-use crate::ground::GroundFile;
-use crate::lamp::changed;
-use crate::performance::refused;
 use crate::script::{Act, Script};
-use crate::tooth::ToothPicture;
+use maulstick_painting_setup::ground::GroundFile;
+use maulstick_painting_setup::lamp::changed;
+use maulstick_painting_setup::refused;
+use maulstick_painting_setup::tooth::ToothPicture;
 
 /// Time before a take or a stroke, ns: strokes of two are never one.
 const PAUSE_NS: u64 = 1_000_000_000;

@@ -1,15 +1,4 @@
-//! What a painting begins with: its document, canvas, light, memory and backend.
+//! A script at work.
 
-pub mod backend;
-pub mod cells;
-pub mod destination;
-pub mod document;
 pub mod duration;
 pub mod easel;
-pub mod ground;
-pub mod kit;
-pub mod lamp;
-pub mod memory;
-pub mod picture;
-pub mod tooth;
-pub mod viewing;

@@ -13,9 +13,9 @@ use maulstick_rig::files::{Kind, write_whole};
 
 use maulstick::commands::table::table;
 use maulstick::commands::write_picture;
-use maulstick::outputs::{UsedFile, check_outputs};
 use maulstick::plot::{Axis, Curve, Panel, plot};
 use maulstick::say;
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Grids where none are named.
 const GRIDS: [u16; 3] = [32, 64, 128];

@@ -14,7 +14,7 @@ use serde_json::json;
 
 use maulstick::commands::table::table;
 use maulstick::commands::{print_json, print_text};
-use maulstick::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// The group of the command.
 #[derive(Debug, Subcommand)]

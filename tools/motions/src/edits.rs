@@ -17,7 +17,7 @@ use maulstick::commands::motion::{HeadOptions, parse_place, refused};
 
 use crate::TakeFiles;
 use maulstick::commands::write_take;
-use maulstick::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick take cut`.
 #[derive(Args, Clone, Debug)]

@@ -11,7 +11,7 @@ use maulstick_rig::files::Kind;
 use crate::outline_file::read_outline;
 use maulstick::commands::motion::{HeadOptions, refused};
 use maulstick::commands::{say, write_take};
-use maulstick::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick take fill`.
 #[derive(Args, Clone, Debug)]

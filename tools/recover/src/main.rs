@@ -12,8 +12,8 @@ use maulstick_types::scene::{CANVAS, PALETTE};
 use serde_json::json;
 
 use maulstick::commands::{print_json, progress, progress_bar};
-use maulstick::document::wrong;
 use maulstick::say;
+use maulstick_painting_setup::document::wrong;
 
 /// At most so many names are printed of a kind.
 const NAMES: usize = 20;

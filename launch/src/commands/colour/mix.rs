@@ -9,9 +9,9 @@ use maulstick_rig::UserError;
 use serde_json::json;
 
 use crate::commands::{print_json, print_text};
-use crate::performance::{library_from, mixture_of};
 use crate::swatch::{Terminal, in_words, sparkline};
-use crate::viewing::ViewingOptions;
+use maulstick_painting_setup::viewing::ViewingOptions;
+use maulstick_painting_setup::{library_from, mixture_of};
 
 /// Options of `maulstick colour mix`.
 #[derive(Args, Clone, Debug)]

@@ -18,9 +18,9 @@ use serde_json::json;
 
 use crate::commands::force_order::{Order, give};
 use crate::commands::{print_text, write_picture};
-use crate::outputs::{UsedFile, check_outputs};
-use crate::performance::brush_file;
 use crate::plot::{Axis, Curve, Panel, from_zero, plot};
+use maulstick_painting_setup::brush_file;
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// A law of force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

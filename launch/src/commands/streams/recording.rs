@@ -18,7 +18,7 @@ use super::record::{self, RecordOptions};
 use super::recording_info::info;
 use crate::commands::replay::{self, ReplayOptions};
 use crate::commands::say;
-use crate::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Subcommands of `maulstick recording`.
 #[derive(Subcommand, Clone, Debug)]

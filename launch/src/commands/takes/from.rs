@@ -20,8 +20,8 @@ use maulstick_types::paint::Entry;
 use super::painting_record::PaintingRecord;
 use super::take_writer::{TakeOrigin, TakeWriter};
 use crate::commands::say;
-use crate::document::wrong;
-use crate::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::document::wrong;
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick take from`.
 #[derive(Args, Clone, Debug)]

@@ -8,7 +8,7 @@ use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 
 use crate::commands::write_take;
-use crate::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick take import`.
 #[derive(Args, Clone, Debug)]

@@ -17,15 +17,17 @@ use maulstick_session::{Autosave, Offline};
 use maulstick_types::Mixture;
 
 use super::render_session::render_session;
-use crate::backend::choose_backend;
-use crate::cells::picture_settings;
 use crate::commands::progress_bar;
-use crate::destination::export;
-use crate::document::{Presence, go_on, presence, wrong};
 use crate::easel::Easel;
-use crate::outputs::{UsedFile, check_apart, check_outputs, named_by};
-use crate::performance::{PaintingOptions, brush_file, library_from, painting_setup, refused};
 use crate::script::{Act, Script, advice};
+use maulstick_painting_setup::backend::choose_backend;
+use maulstick_painting_setup::cells::picture_settings;
+use maulstick_painting_setup::destination::export;
+use maulstick_painting_setup::document::{Presence, go_on, presence, wrong};
+use maulstick_painting_setup::outputs::{UsedFile, check_apart, check_outputs, named_by};
+use maulstick_painting_setup::{
+    PaintingOptions, brush_file, library_from, painting_setup, refused,
+};
 
 /// Options of `maulstick render`.
 #[derive(Args, Clone, Debug)]

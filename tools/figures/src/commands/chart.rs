@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick::outputs::{UsedFile, check_outputs};
-use maulstick::performance::library_from;
-use maulstick::viewing::ViewingOptions;
+use maulstick_painting_setup::library_from;
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::viewing::ViewingOptions;
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 

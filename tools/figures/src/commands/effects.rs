@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick::commands::{progress_bar, write_picture};
-use maulstick::outputs::{UsedFile, check_outputs};
 use maulstick::paintings::BoardOptions;
-use maulstick::performance::library;
 use maulstick::say;
+use maulstick_painting_setup::library;
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 

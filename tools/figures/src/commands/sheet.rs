@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick::cells::SheetCells;
 use maulstick::commands::progress_bar;
-use maulstick::performance::library;
+use maulstick_painting_setup::cells::SheetCells;
+use maulstick_painting_setup::library;
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, check_writable};
 

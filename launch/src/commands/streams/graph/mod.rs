@@ -22,7 +22,7 @@ use self::processes::Graph;
 use super::measure::duration;
 use crate::commands::client::Target;
 use crate::commands::{print_json, print_text};
-use crate::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick topic graph`.
 #[derive(Args, Clone, Debug)]

@@ -9,13 +9,13 @@ use maulstick_rig::UserError;
 use maulstick_rig::config::{BrushSection, RigConfig, is_path};
 use maulstick_types::Mixture;
 
-use crate::performance::brush_file;
+use crate::brushes::brush_file;
 
 /// The canvas, palette, brush, paints and light of a rig, with the files that they name.
 ///
 /// # Errors
 /// A [`UserError`] for a file that cannot be read.
-pub fn kit_of(
+pub fn take_setup(
     config: &RigConfig,
     brush: &BrushSection,
     loads: &[Mixture],
@@ -51,9 +51,10 @@ pub fn kit_of(
     }
     if is_path(&config.canvas.ground) {
         let file = Path::new(&config.canvas.ground);
-        let extension = match PictureKind::is_named(file) {
-            true => file.extension().unwrap_or_default().to_ascii_lowercase(),
-            false => "csv".into(),
+        let extension = if PictureKind::is_named(file) {
+            file.extension().unwrap_or_default().to_ascii_lowercase()
+        } else {
+            "csv".into()
         };
         settings.canvas.ground = kit.add(read(file)?, &extension.to_string_lossy());
     }

@@ -7,6 +7,7 @@ use maulstick_rig::config::{RigConfig, is_path};
 use maulstick_rig::files::{FileId, Kind, check_writable, gives_way, is_companion};
 use maulstick_rig::{UserError, whole_path};
 use maulstick_types::values::WholePath;
+use thiserror::Error;
 
 /// A file that a command reads or writes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -85,22 +86,62 @@ pub fn named_by(config: &RigConfig) -> Vec<UsedFile> {
         .collect()
 }
 
+/// Why a file cannot be written.
+#[derive(Debug, Error)]
+pub enum OutputError {
+    /// It is one that is read.
+    #[error("{} would take the place of {}", .output.what, .input.what)]
+    IsInput {
+        /// What is to be written.
+        output: UsedFile,
+        /// What is read.
+        input: UsedFile,
+    },
+    /// It is another one that is written.
+    #[error("{} and {} would be one file", .other.what, .output.what)]
+    IsOutput {
+        /// What is to be written.
+        output: UsedFile,
+        /// The other one.
+        other: UsedFile,
+    },
+    /// Its extension is that of a file beside a painting.
+    #[error("a file with this extension may belong to a painting")]
+    Companion(UsedFile),
+    /// The system, or the file that is there, does not allow it.
+    #[error("{1}")]
+    Unwritable(PathBuf, std::io::Error),
+}
+
+impl From<OutputError> for UserError {
+    fn from(error: OutputError) -> Self {
+        let fault = Self::usage(error.to_string());
+        let (OutputError::IsInput { output, .. }
+        | OutputError::IsOutput { output, .. }
+        | OutputError::Companion(output)) = &error
+        else {
+            let OutputError::Unwritable(path, error) = error else {
+                return fault;
+            };
+            return Self::writing(&path, &error);
+        };
+        fault
+            .at(output.path.display().to_string())
+            .help(format!("give {} another name", output.what))
+    }
+}
+
 /// Sees, before the work that fills them, that outputs are files of their own and can be written.
 ///
 /// # Errors
-/// A [`UserError`] where an output is an input or another output, or where it cannot be written.
-pub fn check_outputs(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), UserError> {
+/// An [`OutputError`] where one is an input or another output, or cannot be written.
+pub fn check_outputs(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), OutputError> {
     check_apart(outputs, inputs)?;
-    let companion = outputs.iter().find(|output| is_companion(&output.path));
-    if let Some(UsedFile { what, path, .. }) = companion {
-        return Err(
-            UserError::usage("a file with this extension may belong to a painting")
-                .at(path.display().to_string())
-                .help(format!("give {what} another name")),
-        );
+    if let Some(output) = outputs.iter().find(|output| is_companion(&output.path)) {
+        return Err(OutputError::Companion(output.clone()));
     }
     outputs.iter().try_for_each(|UsedFile { path, kind, .. }| {
-        check_writable(path, *kind).map_err(|error| UserError::writing(path, &error))
+        check_writable(path, *kind).map_err(|error| OutputError::Unwritable(path.clone(), error))
     })
 }
 
@@ -119,12 +160,11 @@ impl Relayed {
     /// A [`UserError`] where the path cannot be told as text, or the current folder is gone.
     pub fn new(path: &Path, kind: Kind) -> Result<Self, UserError> {
         let to = PathBuf::from(whole_path(path)?.as_str());
-        let written = match gives_way(&to, kind) {
-            true => to.clone(),
-            false => {
-                let name = to.file_name().unwrap_or_default().to_string_lossy();
-                to.with_file_name(format!("{}.new.{name}", std::process::id()))
-            }
+        let written = if gives_way(&to, kind) {
+            to.clone()
+        } else {
+            let name = to.file_name().unwrap_or_default().to_string_lossy();
+            to.with_file_name(format!("{}.new.{name}", std::process::id()))
         };
         Ok(Self { to, written })
     }
@@ -153,22 +193,17 @@ impl Relayed {
 /// Sees that no output is an input or another output, wherever links lead.
 ///
 /// # Errors
-/// A [`UserError`] where one is.
-pub fn check_apart(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), UserError> {
+/// An [`OutputError`] where one is.
+pub fn check_apart(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), OutputError> {
     for (number, output) in outputs.iter().enumerate() {
         let is_same = |other: &&UsedFile| is_same(&output.path, &other.path);
-        let what = &output.what;
-        let what = match (
-            inputs.iter().find(is_same),
-            outputs[..number].iter().find(is_same),
-        ) {
-            (Some(input), _) => format!("{what} would take the place of {}", input.what),
-            (None, Some(other)) => format!("{} and {what} would be one file", other.what),
-            (None, None) => continue,
-        };
-        return Err(UserError::usage(what)
-            .at(output.path.display().to_string())
-            .help(format!("give {} another name", output.what)));
+        let output = output.clone();
+        if let Some(input) = inputs.iter().find(is_same).cloned() {
+            return Err(OutputError::IsInput { output, input });
+        }
+        if let Some(other) = outputs[..number].iter().find(is_same).cloned() {
+            return Err(OutputError::IsOutput { output, other });
+        }
     }
     Ok(())
 }
@@ -203,26 +238,28 @@ mod tests {
         std::os::unix::fs::symlink(path("one"), path("link")).expect("a link");
         std::fs::create_dir(path("in")).expect("made");
         let file = |name: &str| UsedFile::new(format!("the {name}"), path(name));
-        let check = |outputs: &[UsedFile], inputs: &[UsedFile]| {
-            check_outputs(outputs, inputs).map_err(|fault| fault.to_string())
-        };
         let wrong = |outputs: &[UsedFile], inputs: &[UsedFile]| {
-            check(outputs, inputs).expect_err("refused")
+            check_outputs(outputs, inputs).expect_err("refused")
         };
-        let text = wrong(&[file("link")], &[file("one")]);
-        assert!(text.contains("the link would take the place of the one"));
-        assert!(text.contains("-->") && text.contains("help: give the link another name"));
-        assert!(wrong(&[file("in/../one")], &[file("link")]).contains("take the place"));
+        let is_input = |error: &OutputError| matches!(error, OutputError::IsInput { .. });
+        let fault = wrong(&[file("link")], &[file("one")]);
+        assert!(is_input(&fault));
+        let fault = UserError::from(fault);
+        assert_eq!(fault.place, Some(path("link").display().to_string()));
+        assert!(fault.help.is_some_and(|help| help.contains("the link")));
+        assert!(is_input(&wrong(&[file("in/../one")], &[file("link")])));
         let twice = wrong(&[file("new"), file("in/../new")], &[]);
-        assert!(twice.contains("would be one file"), "{twice}");
-        check(&[file("new"), file("newer")], &[file("one")]).expect("files of their own");
+        assert!(matches!(twice, OutputError::IsOutput { .. }), "{twice}");
+        check_outputs(&[file("new"), file("newer")], &[file("one")]).expect("files of their own");
         std::fs::hard_link(path("one"), path("second")).expect("a second name");
-        assert!(wrong(&[file("second")], &[file("one")]).contains("take the place of the one"));
+        assert!(is_input(&wrong(&[file("second")], &[file("one")])));
+        let companion = wrong(&[file("a.maul-wal")], &[]);
+        assert!(matches!(companion, OutputError::Companion(_)));
         let null = UsedFile::new("the picture", "/dev/null");
-        assert!(wrong(&[null], &[]).contains("name a file"));
-        assert!(wrong(&[file("a.maul-wal")], &[]).contains("may belong to a painting"));
-        let picture = file("one").of(Kind::Png);
-        assert!(wrong(&[picture], &[]).contains("`--overwrite`"));
+        for unwritable in [null, file("one").of(Kind::Png)] {
+            let error = wrong(&[unwritable], &[]);
+            assert!(matches!(error, OutputError::Unwritable(..)), "{error}");
+        }
         assert!(!path("new").exists());
     }
 

@@ -10,7 +10,7 @@ use maulstick_rig::config::is_path;
 use maulstick_rig::table_file::{MOST_BYTES, read_table};
 use maulstick_types::scene::SAMPLES;
 
-use crate::performance::refused;
+use crate::refusal::refused;
 
 /// How colours are looked at.
 #[derive(Args, Clone, Debug)]

@@ -63,12 +63,12 @@ fn read(path: &Path) -> Result<Profile, UserError> {
 mod tests {
     use super::*;
 
-    fn fault(profile: &str, gamut: &str) -> String {
+    fn fault(profile: &str, gamut: &str) -> UserError {
         let view = ViewSection {
             profile: profile.into(),
             gamut: gamut.into(),
         };
-        export(&view, "--profile").expect_err("refused").to_string()
+        export(&view, "--profile").expect_err("refused")
     }
 
     #[test]
@@ -90,23 +90,17 @@ mod tests {
         let read = export(&view, "--profile").expect("its own profile");
         assert_eq!(read.profile.icc(), wide.profile.icc());
 
-        let text = fault(&path("none.icc"), "soft");
-        assert!(
-            text.contains("none.icc") && text.contains("check the path"),
-            "{text}"
-        );
         let torn = path("torn.icc");
         std::fs::write(&torn, &wide.profile.icc()[..300]).expect("written");
-        let text = fault(&torn, "soft");
-        assert!(
-            text.contains("damaged") && text.contains("torn.icc") && text.contains("help"),
-            "{text}"
-        );
-        let text = fault("display-p4", "soft");
-        assert!(
-            text.contains("'display-p3'") && text.contains("--profile"),
-            "{text}"
-        );
-        assert!(fault("srgb", "hard").contains("soft, clamp"));
+        for file in [path("none.icc"), torn] {
+            let fault = fault(&file, "soft");
+            assert!(fault.help.is_some(), "{fault}");
+            assert_eq!(fault.place, Some(file));
+        }
+        let nearest = fault("display-p4", "soft");
+        assert_eq!(nearest.place.as_deref(), Some("--profile"));
+        assert!(nearest.to_string().contains("'display-p3'"), "{nearest}");
+        let help = fault("srgb", "hard").help.unwrap_or_default();
+        assert!(help.contains("soft") && help.contains("clamp"), "{help}");
     }
 }

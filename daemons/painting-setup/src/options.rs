@@ -1,23 +1,17 @@
-//! Setup that `render` and `up --play` share: the take, the brush, the loads, the canvas.
+//! Options of a painting, and what they change in the settings of a rig.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_brush::BrushFile;
-use maulstick_canvas::EditError;
-use maulstick_models::{AUTO, AutoRole, auto_model, model_called};
-use maulstick_optics::{Illuminant, PaintError, PaintLibrary};
-use maulstick_painting::{PaintingSetup, paint_error};
+use maulstick_optics::PaintLibrary;
 use maulstick_rig::UserError;
-use maulstick_rig::config::{BACKENDS, BrushSection, LightSection, RigConfig};
-use maulstick_rig::table_file::{MOST_BYTES, read_table};
+use maulstick_rig::config::{BACKENDS, BrushSection, RigConfig};
 use maulstick_types::Mixture;
-use maulstick_types::command::advice::Advice;
-use maulstick_types::scene::Light;
+use thiserror::Error;
 
+use crate::brushes::brush_file;
 use crate::cells::{check_canvas, parse_cell_mm};
-use crate::ground::GroundFile;
-use crate::viewing::illuminant;
+use crate::paints::mixture_of;
 
 /// What is painted with, and on.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
@@ -80,38 +74,28 @@ pub struct PaintingOptions {
     pub ledger: Option<PathBuf>,
 }
 
-/// The brush file of a section, at its size, as [`maulstick_device::brush_file`] has it.
-///
-/// # Errors
-/// A [`UserError`] for an unknown kind or a bad file, with advice on its format.
-pub fn brush_file(section: &BrushSection) -> Result<BrushFile, UserError> {
-    maulstick_device::brush_file(section).map_err(of_a_brush)
+/// Text that is no size of a canvas.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum SizeError {
+    /// No two numbers.
+    #[error("'{0}' is not a size such as 1024x768")]
+    Malformed(String),
+    /// Too few cells, or too many.
+    #[error("a canvas has 1 to 65536 cells either way, not {0}")]
+    OutOfRange(String),
 }
 
-/// Error of a brush file, without the advice for settings of a rig, which does not apply.
-#[must_use]
-pub fn of_a_brush(fault: UserError) -> UserError {
-    match fault.advice == Some(Advice::DefaultSettings) {
-        true => fault.help(
-            "docs/brushes.md says what a brush file holds; `maulstick brush list` shows the library",
-        ),
-        false => fault,
-    }
-}
-
-/// Reads `WxH`.
+/// Reads `WxH`, cells.
 ///
 /// # Errors
-/// The error, in words.
-pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
-    let wrong = || format!("'{text}' is not a size such as 1024x768");
+/// A [`SizeError`] for another text.
+pub fn parse_size(text: &str) -> Result<[u32; 2], SizeError> {
+    let wrong = || SizeError::Malformed(text.to_owned());
     let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
     let parse = |side: &str| side.trim().parse::<u32>().map_err(|_| wrong());
     let size = [parse(width)?, parse(height)?];
     if size.iter().any(|side| !(1..=65_536).contains(side)) {
-        return Err(format!(
-            "a canvas has 1 to 65536 cells either way, not {text}"
-        ));
+        return Err(SizeError::OutOfRange(text.to_owned()));
     }
     Ok(size)
 }
@@ -191,9 +175,10 @@ impl KitOptions {
         embedded: &[String],
         library: &PaintLibrary,
     ) -> Result<Vec<Mixture>, UserError> {
-        let (loads, whose) = match self.load.is_empty() {
-            false => (self.load.as_slice(), "--load"),
-            true => (embedded, "the take's load"),
+        let (loads, whose) = if self.load.is_empty() {
+            (embedded, "the take's load")
+        } else {
+            (self.load.as_slice(), "--load")
         };
         let mixture = |text: &String| {
             mixture_of(text, library).map_err(|fault| fault.at(format!("{whose} {text:?}")))
@@ -239,124 +224,6 @@ impl PaintingOptions {
     }
 }
 
-/// A mixture of a library's paints, their names spelt as the library does.
-///
-/// # Errors
-/// A [`UserError`] for a bad mixture or an unknown paint, with the nearest name.
-pub fn mixture_of(text: &str, library: &PaintLibrary) -> Result<Mixture, UserError> {
-    let mixture = text.parse().map_err(PaintError::Mixture);
-    mixture
-        .and_then(|mixture: Mixture| library.check(&mixture))
-        .map_err(|error| refused(paint_error(error)))
-}
-
-/// A refusal of the painting as the user sees it.
-#[must_use]
-pub fn refused(refusal: EditError) -> UserError {
-    UserError::usage(refusal.to_string()).advise(refusal.advice())
-}
-
-/// The measured paints.
-///
-/// # Errors
-/// None in practice: they are part of the program.
-pub fn library() -> Result<PaintLibrary, UserError> {
-    PaintLibrary::measured().map_err(|error| UserError::failure(error.to_string()))
-}
-
-/// The paints of a paint file; without one, the measured ones.
-///
-/// # Errors
-/// A [`UserError`] with file and line for a file that is no paint file.
-pub fn library_from(path: Option<&Path>) -> Result<PaintLibrary, UserError> {
-    let Some(path) = path else {
-        return library();
-    };
-    let text = read_table(path, MOST_BYTES)?;
-    PaintLibrary::parse(&text).map_err(|error| match error {
-        PaintError::File { line, what } => UserError::usage(what)
-            .at(format!("{}:{line}", path.display()))
-            .help("a row: paint, colour index, source, K or S, then 101 values, 380 to 780 nm"),
-        other => refused(paint_error(other)),
-    })
-}
-
-/// The light of the rig's settings, with the spectrum of its file if it names one.
-fn light(section: &LightSection) -> Result<Light, UserError> {
-    let mut light = section.light();
-    if Illuminant::named(&section.illuminant).is_none() {
-        let found = illuminant(&section.illuminant).map_err(|fault| match fault.place {
-            None => fault.at("illuminant of [light], or --illuminant"),
-            Some(_) => fault,
-        })?;
-        light.illuminant = found.name;
-        light.spectrum = found.power.0.to_vec();
-    }
-    Ok(light)
-}
-
-/// Paints of the wells: as the settings say. Without wells in the settings, the painter's own paints lie in them in the
-/// order of their file.
-fn wells(config: &RigConfig, library: &PaintLibrary) -> Vec<String> {
-    let default = RigConfig::default().palette.wells;
-    let wells = &config.palette.wells;
-    let all_known = wells.iter().all(|name| library.find(name).is_ok());
-    if all_known || config.paint.paints.is_none() || *wells != default {
-        return wells.clone();
-    }
-    let names = library.paints().iter().map(|paint| paint.name.clone());
-    names.take(default.len()).collect()
-}
-
-/// The name of the canvas's paint model: `auto` begins with one that it may propose to change later.
-fn canvas_model(name: &str) -> Result<String, UserError> {
-    match name {
-        AUTO => Ok(auto_model(AutoRole::First).name.to_owned()),
-        name => model(name, "model of [paint], or --model"),
-    }
-}
-
-/// The name of a paint model.
-fn model(name: &str, place: &str) -> Result<String, UserError> {
-    let entry = model_called(name).map_err(|error| refused(error).at(place))?;
-    Ok(entry.name.to_owned())
-}
-
-/// The painting that the rig's settings ask for.
-///
-/// # Errors
-/// A [`UserError`] for a well that is no mixture, or an invalid light.
-pub fn painting_setup(
-    config: &RigConfig,
-    library: &PaintLibrary,
-) -> Result<PaintingSetup, UserError> {
-    let canvas = &config.canvas;
-    let wells = wells(config, library);
-    let wells = wells
-        .iter()
-        .map(|text| {
-            text.parse::<Mixture>()
-                .map_err(|error| refused(paint_error(error.into())).at("[palette] wells"))
-        })
-        .collect::<Result<_, _>>()?;
-    let mut setup = PaintingSetup {
-        cells: canvas.cells(),
-        cell_m: canvas.cell_mm * 1e-3,
-        tooth: canvas.tooth.clone(),
-        tooth_seed: canvas.tooth_seed,
-        stain_m: canvas.stain_um * 1e-6,
-        piles_last: config.palette.piles == "last",
-        wells,
-        light: light(&config.light)?,
-        exposure: config.light.exposure,
-        model: canvas_model(&config.paint.model)?,
-        palette_model: model(&config.palette.model, "model of [palette]")?,
-        ..PaintingSetup::default()
-    };
-    GroundFile::read(&canvas.ground)?.prime(&mut setup)?;
-    Ok(setup)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -366,37 +233,6 @@ mod tests {
         assert_eq!(parse_size("640x480"), Ok([640, 480]));
         for text in ["640", "x480", "0x10", "640x-1", "1e3x2", "70000x1"] {
             assert!(parse_size(text).is_err(), "{text}");
-        }
-    }
-
-    #[test]
-    fn a_paint_model_is_chosen_for_a_new_painting_alone() {
-        let setup = |canvas: &str, palette: &str| {
-            let options = PaintingOptions {
-                model: Some(canvas.into()),
-                ..Default::default()
-            };
-            assert_eq!(options.for_a_new_one(), Some("--model"));
-            let mut config = RigConfig::default();
-            palette.clone_into(&mut config.palette.model);
-            options.apply(&mut config)?;
-            painting_setup(&config, &library()?).map(|setup| [setup.model, setup.palette_model])
-        };
-        let marker = ["marker", "impasto"].map(str::to_owned);
-        let auto = ["impasto", "impasto"].map(str::to_owned);
-        assert_eq!(setup("auto", "impasto"), Ok(auto));
-        assert!(
-            setup("impasto", "auto").is_err(),
-            "nobody falls behind on a palette"
-        );
-        assert_eq!(setup("marker", "impasto"), Ok(marker));
-        for (canvas, palette, place) in [
-            ("makrer", "impasto", "model of [paint], or --model"),
-            ("impasto", "makrer", "model of [palette]"),
-        ] {
-            let fault = setup(canvas, palette).expect_err("misspelt").to_string();
-            let told = fault.contains("'makrer'") && fault.contains("did you mean 'marker'");
-            assert!(told && fault.contains(place), "{fault}");
         }
     }
 
