@@ -11,10 +11,7 @@
 //! | [`plot`] | curves over two axes |
 //! | [`swatch`] | colours in the terminal |
 //! | [`doctor`] | what of this machine keeps a rig from painting well |
-//! | [`easel`] | a painting at which a script is followed |
 //! | [`runtime`] | the tokio runtime of commands that wait for many things at once |
-//! | [`script`] | a day at the easel, a step after the other |
-//! | [`paintings`] | the bundled paintings |
 //! | [`panics`] | panics as errors that a user can read |
 //!
 //! # The rig
@@ -57,16 +54,12 @@ pub mod cli;
 pub mod commands;
 pub mod doctor;
 mod figures;
-pub mod paintings;
 pub mod panics;
 pub mod processes;
 pub mod runtime;
-pub mod script;
-mod setup;
 pub mod up;
 
 pub use figures::{page, plot, swatch};
-pub use setup::{duration, easel};
 
 use maulstick_rig::UserError;
 use maulstick_rig::log::{flush, say};

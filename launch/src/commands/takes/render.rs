@@ -18,8 +18,6 @@ use maulstick_types::Mixture;
 
 use super::render_session::render_session;
 use crate::commands::progress_bar;
-use crate::easel::Easel;
-use crate::script::{Act, Script, advice};
 use maulstick_painting_setup::backend::choose_backend;
 use maulstick_painting_setup::cells::picture_settings;
 use maulstick_painting_setup::destination::export;
@@ -28,6 +26,8 @@ use maulstick_painting_setup::outputs::{UsedFile, check_apart, check_outputs, na
 use maulstick_painting_setup::{
     PaintingOptions, brush_file, library_from, painting_setup, refused,
 };
+use maulstick_script::ScriptRunner;
+use maulstick_script::{Act, Script, advice};
 
 /// Options of `maulstick render`.
 #[derive(Args, Clone, Debug)]
@@ -276,9 +276,9 @@ impl RenderOptions {
         export: &Export,
     ) -> Result<u64, UserError> {
         let bar = progress_bar(script.length_ns()).with_message("painting");
-        let mut easel = Easel::new(offline, &mut autosave, bar);
-        let painted = easel.follow_script(script);
-        let mut offline = easel.offline;
+        let mut runner = ScriptRunner::new(offline, &mut autosave, bar);
+        let painted = runner.follow_script(script);
+        let mut offline = runner.offline;
         let mut close = |offline: &mut Offline| match (autosave.take(), &self.document) {
             (Some(autosave), Some(path)) => autosave
                 .close(offline.sequencer_mut())

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick::commands::{progress_bar, write_picture};
-use maulstick::paintings::BoardOptions;
 use maulstick::say;
 use maulstick_painting_setup::library;
 use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
+use maulstick_script::paintings::BoardOptions;
 
 use crate::sheet::effects::effects;
 

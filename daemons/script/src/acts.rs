@@ -18,7 +18,7 @@ use serde::Deserialize as _;
 
 use super::Act;
 use super::entries::file;
-use super::steps::Step;
+use super::step::Step;
 use super::stroke::{Stroke, Turn};
 use maulstick_painting_setup::ground::GroundFile;
 use maulstick_painting_setup::lamp::changed;
@@ -34,6 +34,7 @@ const SPEED_MM_S: f64 = 120.0;
 const FARTHEST_MM: f64 = 5000.0;
 /// No stroke takes longer, s.
 const LONGEST_S: f64 = 600.0;
+
 /// Reads an edit. Its paints are spelt as the library does.
 pub(super) fn edit<E: Form>(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, UserError> {
     if step.kind.form.switch {
@@ -86,9 +87,10 @@ pub(super) fn file_of(step: &Step<'_>) -> Result<Option<UsedFile>, UserError> {
 }
 
 pub(super) fn switched_on(step: &Step<'_>) -> Result<(), UserError> {
-    match step.due(step.keys.switch(step.kind.form.key)?)? {
-        true => Ok(()),
-        false => Err(UserError::usage("a step that is 'false' does nothing").help("leave it out")),
+    if step.due(step.keys.switch(step.kind.form.key)?)? {
+        Ok(())
+    } else {
+        Err(UserError::usage("a step that is 'false' does nothing").help("leave it out"))
     }
 }
 
@@ -151,18 +153,12 @@ fn within(
     }
 }
 
-pub(super) fn stroke(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
+/// The points of a stroke: x and y, mm, and pressure.
+fn points(step: &Step<'_>) -> Result<Vec<[f64; 3]>, UserError> {
     let keys = &step.keys;
-    let rows = step.due(keys.rows("stroke")?)?;
     let wrong = |what: String, help: &str| Err(keys.fault("stroke", what).help(help));
-    if rows.is_empty() {
-        return wrong(
-            "a stroke of no points does nothing".to_owned(),
-            "a point is [x_mm, y_mm, pressure]; one alone is a dab",
-        );
-    }
-    let mut points = Vec::with_capacity(rows.len());
-    for (place, row) in rows.iter().enumerate() {
+    let mut points = Vec::new();
+    for (place, row) in step.due(keys.rows("stroke")?)?.iter().enumerate() {
         let number = place + 1;
         let [x, y, pressure] = row[..] else {
             return wrong(
@@ -185,6 +181,18 @@ pub(super) fn stroke(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError
         }
         points.push([x, y, pressure]);
     }
+    if points.is_empty() {
+        return wrong(
+            "a stroke of no points does nothing".to_owned(),
+            "a point is [x_mm, y_mm, pressure]; one alone is a dab",
+        );
+    }
+    Ok(points)
+}
+
+pub(super) fn stroke(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
+    let keys = &step.keys;
+    let points = points(step)?;
     let turn = match (
         within(step, "turn_deg", -360.0..=360.0)?,
         within(step, "twist_deg", -360.0..=360.0)?,
@@ -205,10 +213,9 @@ pub(super) fn stroke(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError
         speed_mm_s: within(step, "speed_mm_s", 1.0..=2000.0)?.unwrap_or(SPEED_MM_S),
     };
     if stroke.seconds() > LONGEST_S {
-        return wrong(
-            format!("a stroke of {:.0} s", stroke.seconds()),
-            "make it two, or faster: a stroke takes up to 600 s",
-        );
+        let what = format!("a stroke of {:.0} s", stroke.seconds());
+        let help = "make it two, or faster: a stroke takes up to 600 s";
+        return Err(keys.fault("stroke", what).help(help));
     }
     Ok(Act::Stroke(stroke))
 }

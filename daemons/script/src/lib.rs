@@ -9,24 +9,47 @@
 //! ]
 //! ```
 //!
-//! `canvas_mm = [200, 160]` before the steps says how large a new canvas is. A step has one key that says what is done, and perhaps others that say how. Paths count from the
-//! script's folder. All of it is read before anything is painted.
+//! `canvas_mm = [200, 160]` before the steps says how large a new canvas is. A step has one key that says what is done, and
+//! perhaps others that say how. Paths count from the script's folder. All of it is read before anything is painted.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | `entries` | keys and what they hold, each with its line |
+//! | `step` | a step as it is written |
 //! | `steps` | which steps there are, and what keys each has |
 //! | `acts` | what each step does |
 //! | [`advice`] | what to do about a refusal, in steps |
 //! | [`stroke`] | a stroke written as points |
+//! | `script_runner` | [`ScriptRunner`]: a script painted |
+//! | [`paintings`] | the bundled paintings |
+//!
+//! ```
+//! use std::path::Path;
+//!
+//! use maulstick_painting_setup::library;
+//! use maulstick_script::{Act, Script};
+//!
+//! # fn main() -> Result<(), maulstick_rig::UserError> {
+//! let text = "step = [ { load = \"Bone Black\" }, { stroke = [[20, 30, 0.3], [60, 34, 0.5]] } ]";
+//! let script = Script::parse(text, "day.toml", Path::new(""), &library()?)?;
+//! assert!(matches!(script.steps[1].1, Act::Stroke(_)));
+//! # Ok(())
+//! # }
+//! ```
 
 mod acts;
 pub mod advice;
+mod duration;
 mod entries;
+pub mod paintings;
+mod script_runner;
+mod step;
 mod steps;
 pub mod stroke;
 #[cfg(test)]
 mod tests;
+
+pub use script_runner::ScriptRunner;
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -110,9 +133,10 @@ impl Script {
     pub fn read(path: &Path, library: &PaintLibrary) -> Result<Self, UserError> {
         let text = std::fs::read_to_string(path).map_err(|error| {
             let fault = UserError::reading(path, &error);
-            match ending(path) == "mcap" {
-                true => fault.help("a take is painted without `--script`: `maulstick render TAKE`"),
-                false => fault,
+            if ending(path) == "mcap" {
+                fault.help("a take is painted without `--script`: `maulstick render TAKE`")
+            } else {
+                fault
             }
         })?;
         let folder = path.parent().unwrap_or(Path::new(""));

@@ -12,8 +12,8 @@ use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_rig::UserError;
 use maulstick_session::Offline;
 
-use crate::easel::Easel;
-use crate::script::Script;
+use crate::Script;
+use crate::ScriptRunner;
 use maulstick_painting_setup::cells::SheetCells;
 use maulstick_painting_setup::refused;
 
@@ -114,9 +114,9 @@ pub fn paint(
     let offline = Offline::new(painting, BRUSH, file, DEPTH_SHARE, Vec::new()).map_err(refused)?;
     let mut autosave = None;
     bar.set_length(script.length_ns() / 1_000_000);
-    let mut easel = Easel::new(offline, &mut autosave, bar);
-    easel.follow_script(script)?;
-    Ok(easel.offline)
+    let mut runner = ScriptRunner::new(offline, &mut autosave, bar);
+    runner.follow_script(script)?;
+    Ok(runner.offline)
 }
 
 #[cfg(test)]

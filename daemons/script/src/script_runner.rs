@@ -1,4 +1,4 @@
-//! An easel: a painting at which a script is followed, a step after the other.
+//! Painting by a script, a step after the other.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -17,7 +17,7 @@ use maulstick_types::stylus::StylusSample;
 use maulstick_types::values::{BrushName, MaterialName};
 
 use crate::duration::time_ns;
-use crate::script::{Act, Script};
+use crate::{Act, Script};
 use maulstick_painting_setup::ground::GroundFile;
 use maulstick_painting_setup::lamp::changed;
 use maulstick_painting_setup::refused;
@@ -26,8 +26,8 @@ use maulstick_painting_setup::tooth::ToothPicture;
 /// Time before a take or a stroke, ns: strokes of two are never one.
 const PAUSE_NS: u64 = 1_000_000_000;
 
-/// A painting at which a script is followed.
-pub struct Easel<'a> {
+/// A painting that follows a script.
+pub struct ScriptRunner<'a> {
     /// Brush and paint.
     pub offline: Offline,
     autosave: &'a mut Option<Autosave>,
@@ -39,9 +39,9 @@ pub struct Easel<'a> {
     done: u64,
 }
 
-impl<'a> Easel<'a> {
-    /// An easel; what is painted goes to the document of `autosave`, if there is one, and `bar` shows how far
-    /// it is.
+impl<'a> ScriptRunner<'a> {
+    /// A runner over brush and paint; what is painted goes to the document of `autosave`, if there is one, and `bar` shows
+    /// how far it is.
     pub fn new(offline: Offline, autosave: &'a mut Option<Autosave>, bar: ProgressBar) -> Self {
         Self {
             offline,

@@ -1,4 +1,0 @@
-//! A script at work.
-
-pub mod duration;
-pub mod easel;
