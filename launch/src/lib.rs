@@ -10,7 +10,6 @@
 //! | [`page`] | pictures made of patches, pictures and words |
 //! | [`plot`] | curves over two axes |
 //! | [`swatch`] | colours in the terminal |
-//! | [`doctor`] | what of this machine keeps a rig from painting well |
 //! | [`runtime`] | the tokio runtime of commands that wait for many things at once |
 //! | [`panics`] | panics as errors that a user can read |
 //!
@@ -35,9 +34,7 @@
 //! `up`, the recorder and `recording replay` wait on a tokio runtime for processes, signals, messages, orders and times at
 //! once. What blocks (a painting that is checked or saved, loads, the keys of a terminal, a recording that is read ahead)
 //! is on the runtime's threads for that. The supervisor itself stays on the main thread: the kernel kills a node when the
-//! thread that started it ends. Threads of this crate's own are:
-//!
-//! - one that `doctor` tries a real-time priority with, which the thread would keep.
+//! thread that started it ends.
 //!
 //! # Recordings
 //!
@@ -52,7 +49,6 @@ pub mod advice;
 pub mod beside;
 pub mod cli;
 pub mod commands;
-pub mod doctor;
 mod figures;
 pub mod panics;
 pub mod processes;

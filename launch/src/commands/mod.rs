@@ -3,7 +3,7 @@
 //! | module | commands |
 //! | --- | --- |
 //! | [`edit`] | edits, wherever they are grouped: `brush load`, `layer dry`, `painting undo` |
-//! | [`brush`], `canvas`, `colour`, [`demo`], [`device`], `completions` | those of these names, besides edits |
+//! | [`brush`], `canvas`, `colour`, [`demo`], [`device`], [`doctor`], `completions` | those of these names, besides edits |
 //! | [`painting`] | paintings in files; `new`, `open`, `save-as`, `snapshot` of a running rig |
 //! | `rig` | `node list`, `endpoint`, `schema` |
 //! | `takes` | takes that are made, imported, painted |
@@ -16,6 +16,7 @@ pub mod colour;
 pub mod completions;
 pub mod demo;
 pub mod device;
+pub mod doctor;
 pub mod edit;
 pub mod motion;
 pub mod painting;

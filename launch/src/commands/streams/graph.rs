@@ -1,24 +1,15 @@
 //! `maulstick topic graph`: the processes of a running rig and what they send each other, as a picture.
-//!
-//! | module | holds |
-//! | --- | --- |
-//! | [`processes`] | the graph, of what each process says that it sends and receives |
-//! | [`mermaid`], [`svg`] | its pictures |
-
-mod mermaid;
-mod processes;
-mod svg;
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use maulstick_graph::{Graph, mermaid, svg};
 use maulstick_recorder::Listener;
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, ending, write_whole};
 
-use self::processes::Graph;
 use super::measure::duration;
 use crate::commands::client::Target;
 use crate::commands::{print_json, print_text};

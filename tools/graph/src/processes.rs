@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 /// Place of a process on the way from the hand to the eye.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum Stage {
+pub enum Stage {
     /// It sends samples of a hand.
     Device,
     /// It solves a brush.
@@ -47,7 +47,7 @@ const STATUS: &str = "node/*/status";
 
 /// A topic that a process sends.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Sent {
+pub struct Sent {
     /// The topic.
     pub topic: String,
     /// Messages a second of the topic, of all its senders; 0 where fewer than two came.
@@ -56,7 +56,7 @@ pub(super) struct Sent {
 
 impl Sent {
     /// The topic with its rate, if it has one.
-    pub(super) fn label(&self) -> String {
+    pub fn label(&self) -> String {
         match self.rate_hz {
             0.0 => self.topic.clone(),
             rate if rate < 10.0 => format!("{} {rate:.1}/s", self.topic),
@@ -67,7 +67,7 @@ impl Sent {
 
 /// A process.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Process {
+pub struct Process {
     /// Its name in the rig.
     pub name: String,
     /// Its stage.
@@ -82,7 +82,7 @@ pub(super) struct Process {
 
 /// What one process sends and another receives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Arrow {
+pub struct Arrow {
     /// Place of the sender.
     pub from: usize,
     /// Place of the topic among what it sends.
@@ -95,7 +95,7 @@ pub(super) struct Arrow {
 
 /// Processes, and the arrows between them.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Graph {
+pub struct Graph {
     /// By stage, then by name.
     pub processes: Vec<Process>,
     /// By sender, topic and receiver.
@@ -104,11 +104,7 @@ pub(super) struct Graph {
 
 impl Graph {
     /// The graph of a rig's participants, with rates by topic, messages a second.
-    pub(super) fn of(
-        participants: &[Participant],
-        rates: &BTreeMap<&str, f64>,
-        topics: &Topics,
-    ) -> Self {
+    pub fn of(participants: &[Participant], rates: &BTreeMap<&str, f64>, topics: &Topics) -> Self {
         let relative = |key: &String| topics.relative(key).unwrap_or(key).to_owned();
         let process = |participant: &Participant| {
             let topics = participant.sends.iter().map(relative);
@@ -142,12 +138,12 @@ impl Graph {
     }
 
     /// What an arrow carries.
-    pub(super) fn sent(&self, arrow: &Arrow) -> &Sent {
+    pub fn sent(&self, arrow: &Arrow) -> &Sent {
         &self.processes[arrow.from].sends[arrow.sent]
     }
 
     /// The graph for programs.
-    pub(super) fn json(&self) -> Value {
+    pub fn json(&self) -> Value {
         let arrow = |arrow: &Arrow| {
             json!({
                 "from": self.processes[arrow.from].name,
@@ -182,7 +178,7 @@ fn arrows(processes: &[Process]) -> Vec<Arrow> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(crate) mod tests {
     use super::*;
 
     /// A participant of the rig `studio`.

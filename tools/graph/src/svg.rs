@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::processes::{Arrow, Graph, Process, Stage};
+use crate::processes::{Arrow, Graph, Process, Stage};
 
 /// Width of a letter of the monospaced font, and height of a row, px.
 const LETTER: f64 = 6.7;
@@ -146,7 +146,7 @@ impl Layout {
 
 /// The drawing.
 #[must_use]
-pub(super) fn text(graph: &Graph) -> String {
+pub fn text(graph: &Graph) -> String {
     let layout = Layout::of(graph);
     let [width, height] = layout.size;
     let mut text = format!(
@@ -157,9 +157,10 @@ pub(super) fn text(graph: &Graph) -> String {
     for arrow in &graph.arrows {
         let colour = colour(graph.processes[arrow.from].stage);
         let (wire, [x, y]) = layout.wire(graph, arrow);
-        let [thick, opacity] = match graph.sent(arrow).rate_hz > 0.0 {
-            true => [1.6, 1.0],
-            false => [1.0, 0.4],
+        let [thick, opacity] = if graph.sent(arrow).rate_hz > 0.0 {
+            [1.6, 1.0]
+        } else {
+            [1.0, 0.4]
         };
         writeln!(
             text,
@@ -213,8 +214,8 @@ fn escaped(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::processes::tests::studio;
     use super::*;
+    use crate::processes::tests::studio;
 
     #[test]
     fn boxes_stand_apart_and_wires_end_at_them() {

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::processes::Graph;
+use crate::processes::Graph;
 
 /// The text.
 #[must_use]
-pub(super) fn text(graph: &Graph) -> String {
+pub fn text(graph: &Graph) -> String {
     let mut text = "flowchart LR\n".to_owned();
     for (place, process) in graph.processes.iter().enumerate() {
         let mut lines = vec![escaped(&process.name)];
@@ -42,8 +42,8 @@ fn escaped(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::processes::tests::studio;
     use super::*;
+    use crate::processes::tests::studio;
 
     #[test]
     fn what_one_process_sends_another_is_one_arrow() {

@@ -18,7 +18,7 @@ const LIMITS: &str = "/etc/security/limits.d/maulstick.conf";
 /// Whether something is right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum State {
+pub enum State {
     /// It is.
     Ok,
     /// A part of the rig works less well.
@@ -29,7 +29,7 @@ pub(super) enum State {
 
 /// What was found by a check.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub(super) struct Finding {
+pub struct Finding {
     /// Subject of the check.
     pub check: &'static str,
     /// Its outcome.
@@ -110,9 +110,10 @@ fn graphics(graphics: &Graphics) -> Finding {
     match &graphics.paint {
         Ok(paint) => Finding::ok(
             CHECK,
-            match *paint == adapter.name {
-                true => format!("{name} draws the window and computes the paint"),
-                false => format!("{name} draws the window, {paint} computes the paint"),
+            if *paint == adapter.name {
+                format!("{name} draws the window and computes the paint")
+            } else {
+                format!("{name} draws the window, {paint} computes the paint")
             },
         ),
         Err(error) => Finding::warning(
@@ -230,17 +231,18 @@ fn real_time(rights: &RealTime) -> Finding {
         );
     };
     let what = format!("the servo of force feedback may not go first, and stutters ({refusal})");
-    match rights.limit >= u64::from(PRIORITY) {
-        true => Finding::warning(
+    if rights.limit >= u64::from(PRIORITY) {
+        Finding::warning(
             CHECK,
             format!("{what}, though the limit of rtprio is {}", rights.limit),
             "let this container set priorities: docker run --cap-add SYS_NICE",
-        ),
-        false => Finding::warning(
+        )
+    } else {
+        Finding::warning(
             CHECK,
             what,
             format!("echo \"$USER - rtprio 99\" | sudo tee -a {LIMITS}, then log in again"),
-        ),
+        )
     }
 }
 
