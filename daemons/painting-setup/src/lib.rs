@@ -9,10 +9,10 @@
 //! | [`cells`] | side of the cells, and how many a canvas may have |
 //! | [`destination`] | display or file that colours go to: profile and gamut |
 //! | [`document`] | paintings in files |
-//! | [`ground`], [`tooth`], [`picture`] | grounds and teeth by name and from files; pictures that are read |
 //! | [`lamp`], [`viewing`] | light over a painting; light, observer and rule of a table of colours |
 //! | [`memory`] | memory that is allocated at once |
 //! | [`outputs`] | files that are written; none replaces one that is read |
+//! | [`surface`] | grounds and teeth by name and from files; pictures that are read |
 //! | [`take_setup`] | setup that a take embeds |
 //!
 //! ```
@@ -35,17 +35,15 @@ mod brushes;
 pub mod cells;
 pub mod destination;
 pub mod document;
-pub mod ground;
 pub mod lamp;
 pub mod memory;
 pub mod options;
 pub mod outputs;
 mod painting;
 mod paints;
-pub mod picture;
 mod refusal;
+pub mod surface;
 pub mod take_setup;
-pub mod tooth;
 pub mod viewing;
 
 pub use brushes::{brush_file, of_a_brush};

@@ -246,7 +246,7 @@ mod tests {
         assert!(is_input(&fault));
         let fault = UserError::from(fault);
         assert_eq!(fault.place, Some(path("link").display().to_string()));
-        assert!(fault.help.is_some_and(|help| help.contains("the link")));
+        assert!(fault.help.is_some_and(|help| help.contains("link")));
         assert!(is_input(&wrong(&[file("in/../one")], &[file("link")])));
         let twice = wrong(&[file("new"), file("in/../new")], &[]);
         assert!(matches!(twice, OutputError::IsOutput { .. }), "{twice}");

@@ -8,8 +8,8 @@ use maulstick_rig::config::{LightSection, RigConfig};
 use maulstick_types::Mixture;
 use maulstick_types::scene::Light;
 
-use crate::ground::GroundFile;
 use crate::refusal::refused;
+use crate::surface::ground::GroundFile;
 use crate::viewing::illuminant;
 
 /// The light of the rig's settings, with the spectrum of its file if it names one.

@@ -20,10 +20,10 @@ use super::Act;
 use super::entries::file;
 use super::step::Step;
 use super::stroke::{Stroke, Turn};
-use maulstick_painting_setup::ground::GroundFile;
 use maulstick_painting_setup::lamp::changed;
 use maulstick_painting_setup::outputs::UsedFile;
-use maulstick_painting_setup::tooth::ToothPicture;
+use maulstick_painting_setup::surface::ground::GroundFile;
+use maulstick_painting_setup::surface::tooth::ToothPicture;
 use maulstick_painting_setup::{brush_file, mixture_of, refused};
 
 /// Lean of a stroke's handle for which nothing is said, degrees.

@@ -68,9 +68,9 @@ use toml::de::DeTable;
 use self::entries::Source;
 use self::stroke::Stroke;
 use crate::duration::time_ns;
-use maulstick_painting_setup::ground::GroundFile;
 use maulstick_painting_setup::outputs::UsedFile;
-use maulstick_painting_setup::tooth::ToothPicture;
+use maulstick_painting_setup::surface::ground::GroundFile;
+use maulstick_painting_setup::surface::tooth::ToothPicture;
 
 /// Action of a step.
 #[derive(Clone, Debug)]

@@ -92,19 +92,24 @@ pub(super) static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| {
     kinds
 });
 
+/// Names of all kinds.
+fn all() -> String {
+    let keys: Vec<_> = KINDS.iter().map(|kind| kind.form.key).collect();
+    keys.join(", ")
+}
+
+/// Keys of all kinds.
+fn known() -> impl Iterator<Item = &'static &'static str> {
+    let kinds = KINDS.iter();
+    kinds.flat_map(|kind| kind.form.with.iter().chain([&kind.form.key]))
+}
+
 /// A step that does one thing, and whose other keys are that thing's.
 fn step<'a>(
     source: Source<'a>,
     table: &'a DeTable<'a>,
     start: usize,
 ) -> Result<Step<'a>, UserError> {
-    let all = || {
-        KINDS
-            .iter()
-            .map(|kind| kind.form.key)
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
     let keys = Entries {
         source,
         table,
@@ -115,11 +120,6 @@ fn step<'a>(
         .iter()
         .filter(|kind| given.contains(&kind.form.key))
         .collect();
-    let known = || {
-        KINDS
-            .iter()
-            .flat_map(|kind| kind.form.with.iter().chain([&kind.form.key]))
-    };
     if let Some(key) = given.iter().find(|key| !known().any(|known| known == *key)) {
         let meant = nearest(key, known().copied());
         let help = match (meant, &kinds[..]) {

@@ -7,7 +7,7 @@ use maulstick_canvas::relief::tooth_picture::{DEPTH_UM, ToothName, WIDTH_MM};
 use maulstick_exchange::{Image, PictureKind, embed};
 use maulstick_rig::UserError;
 
-use crate::picture::{no_picture, open_picture};
+use crate::surface::picture::{no_picture, open_picture};
 
 /// Depth of a tooth for which nothing is said, µm.
 pub const DEPTH: f64 = 80.0;

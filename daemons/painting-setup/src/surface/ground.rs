@@ -13,8 +13,8 @@ use maulstick_rig::config::is_path;
 use maulstick_rig::log::say;
 use maulstick_rig::table_file::read_table;
 
-use crate::picture::{no_picture, open_picture};
 use crate::refusal::refused;
+use crate::surface::picture::{no_picture, open_picture};
 
 /// A spectrum has at most this many bytes.
 const SPECTRUM_MAX: usize = maulstick_types::limits::SPECTRUM_MAX;
