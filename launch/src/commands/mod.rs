@@ -18,7 +18,6 @@ pub mod demo;
 pub mod device;
 pub mod doctor;
 pub mod edit;
-pub mod motion;
 pub mod painting;
 pub mod replay;
 mod rig;
