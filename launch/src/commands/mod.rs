@@ -8,6 +8,7 @@
 //! | `rig` | `node list`, `endpoint`, `schema` |
 //! | `takes` | takes that are made, imported, painted |
 //! | `streams`, [`replay`] | `topic`, `recording` |
+//! | `option_error` | values that options do not take |
 //! | [`table`] | tables as text, for all of them |
 
 pub mod brush;
@@ -18,6 +19,7 @@ pub mod demo;
 pub mod device;
 pub mod doctor;
 pub mod edit;
+mod option_error;
 pub mod painting;
 pub mod replay;
 mod rig;

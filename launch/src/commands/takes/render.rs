@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
 use maulstick_appearance::picture::Export;
 use maulstick_brush::speed_limit::FASTEST_M_S;
 use maulstick_device::{Take, use_kit};
@@ -16,6 +15,7 @@ use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::{Autosave, Offline};
 use maulstick_types::Mixture;
 
+pub use super::render_options::RenderOptions;
 use super::render_session::render_session;
 use crate::commands::progress_bar;
 use maulstick_painting_setup::backend::choose_backend;
@@ -23,44 +23,9 @@ use maulstick_painting_setup::cells::picture_settings;
 use maulstick_painting_setup::destination::export;
 use maulstick_painting_setup::document::{Presence, go_on, presence, wrong};
 use maulstick_painting_setup::outputs::{UsedFile, check_apart, check_outputs, named_by};
-use maulstick_painting_setup::{
-    PaintingOptions, brush_file, library_from, painting_setup, refused,
-};
+use maulstick_painting_setup::{brush_file, library_from, painting_setup, refused};
 use maulstick_script::ScriptRunner;
 use maulstick_script::{Act, Script, advice};
-
-/// Options of `maulstick render`.
-#[derive(Args, Clone, Debug)]
-pub struct RenderOptions {
-    /// Take, or a recorded session
-    #[arg(required_unless_present = "script", conflicts_with = "script")]
-    take: Option<PathBuf>,
-    /// Script instead of a take: brushes, loads, takes, drying, light, step by step
-    #[arg(long, value_name = "FILE")]
-    script: Option<PathBuf>,
-    /// Picture to write, a PNG
-    #[arg(short, long, value_name = "PNG")]
-    pub(super) output: PathBuf,
-    /// Of a recorded session, paint up to this place of the painting's journal, as `maulstick snapshot` prints it [default:
-    /// its end]
-    #[arg(long, value_name = "PLACE", conflicts_with = "script")]
-    pub(super) until: Option<u64>,
-    /// Settings of the rig
-    #[arg(long, value_name = "FILE")]
-    rig: Option<PathBuf>,
-    /// Colour profile: srgb, display-p3, or the ICC file of a display or printer [default: that of
-    /// rig.toml]
-    #[arg(long, value_name = "PROFILE")]
-    profile: Option<String>,
-    /// Gamut mapping: soft, clamp [default: that of rig.toml]
-    #[arg(long, value_name = "MAPPING")]
-    gamut: Option<String>,
-    /// Painting to paint in and save; begun if it does not exist
-    #[arg(long, value_name = "FILE")]
-    pub(super) document: Option<PathBuf>,
-    #[command(flatten)]
-    pub(super) painting: PaintingOptions,
-}
 
 impl RenderOptions {
     /// The files that are read, but for those that the script names.

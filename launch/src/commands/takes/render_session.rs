@@ -9,7 +9,7 @@ use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::{Autosave, RecordedSession};
 
 use super::from::Counts;
-use super::render::RenderOptions;
+use super::render_options::RenderOptions;
 use crate::commands::{progress_bar, say};
 use maulstick_painting_setup::backend::choose_backend;
 use maulstick_painting_setup::destination::export;
