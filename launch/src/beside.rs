@@ -1,179 +1,43 @@
 //! Commands that programs beside this one carry out: those of `tools/`, which `./run` does not build, and anybody's.
 //!
 //! As with cargo, `maulstick NAME …` runs the program `maulstick-NAME` that lies beside this one, with its own command line.
-//! A program of `tools/` may have commands of several groups: each of its commands stands in [`COMMANDS`], and so in the
-//! help of its group.
+//! A program of `tools/` may have commands of several groups, which [`PROGRAMS`] defines.
 
-use std::collections::BTreeSet;
-use std::ffi::OsString;
 use std::os::unix::process::CommandExt as _;
 use std::path::PathBuf;
 use std::process::Command;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{Arg, ArgMatches, CommandFactory as _, Parser, Subcommand, value_parser};
+use clap::{ArgMatches, Parser, Subcommand};
 use maulstick_rig::UserError;
 use maulstick_rig::files::{allow_overwriting, clear_on_signals};
+use maulstick_tool_options::{PROGRAMS, Program};
 
 use crate::{EXIT_INTERRUPTED, advice, finish, panics};
 
-/// A command of a program in `tools/`.
-#[derive(Debug)]
-pub struct BesideCommand {
-    /// Its group, if it has one, and its name.
-    pub path: &'static [&'static str],
-    /// Package, and program, that has it.
-    pub package: &'static str,
-    /// Help in one line.
-    pub about: &'static str,
-}
-
-const fn command(
-    package: &'static str,
-    path: &'static [&'static str],
-    about: &'static str,
-) -> BesideCommand {
-    BesideCommand {
-        path,
-        package,
-        about,
-    }
-}
-
-const BENCH: &str = "maulstick-bench";
-const FIGURES: &str = "maulstick-figures";
-const FIT: &str = "maulstick-fit";
-const MOTIONS: &str = "maulstick-motions";
-const RECOVER: &str = "maulstick-recover";
-
-/// Commands of the programs in `tools/`; a test of each program compares its own with them.
-pub const COMMANDS: [BesideCommand; 17] = [
-    command(
-        BENCH,
-        &["bench"],
-        "Run benchmarks against reference programs",
-    ),
-    command(
-        FIGURES,
-        &["brush", "sheet"],
-        "Draw each brush and its marks",
-    ),
-    command(
-        FIGURES,
-        &["colour", "chart"],
-        "Draw the mixing chart of all paints",
-    ),
-    command(
-        FIGURES,
-        &["colour", "compare"],
-        "Mix one graded mixture in four ways, and compare their colours",
-    ),
-    command(
-        FIGURES,
-        &["demo", "effects"],
-        "Paint a sheet of the effects of the paint model, with captions",
-    ),
-    command(
-        FIGURES,
-        &["demo", "fluid-force"],
-        "Sweep a square through a fluid along an arc and write the force on it",
-    ),
-    command(
-        FIT,
-        &["colour", "fit"],
-        "Fit paints to measured reflectances",
-    ),
-    command(MOTIONS, &["take", "strokes"], "List the strokes of a take"),
-    command(
-        MOTIONS,
-        &["take", "cut"],
-        "Cut a part out of a take, by times or by strokes",
-    ),
-    command(
-        MOTIONS,
-        &["take", "join"],
-        "Join takes; the brush is lifted between them",
-    ),
-    command(
-        MOTIONS,
-        &["take", "scale"],
-        "Scale a motion on the surface; pressures and heights above it stay",
-    ),
-    command(MOTIONS, &["take", "rotate"], "Turn a motion on the surface"),
-    command(MOTIONS, &["take", "move"], "Move a motion on the surface"),
-    command(
-        MOTIONS,
-        &["take", "retime"],
-        "Make a motion faster or slower",
-    ),
-    command(MOTIONS, &["take", "mirror"], "Mirror a motion"),
-    command(
-        MOTIONS,
-        &["take", "fill"],
-        "Fill an outline with the strokes of an example",
-    ),
-    command(
-        RECOVER,
-        &["painting", "recover"],
-        "Recover what is intact in a damaged painting",
-    ),
-];
-
-/// Name of the argument that has the command line of a program.
-const LINE: &str = "line";
-
-impl BesideCommand {
-    /// The command as it is typed.
-    fn typed(&self) -> String {
-        format!("maulstick {}", self.path.join(" "))
-    }
-
-    /// How the program comes to lie beside this one.
-    fn how_to_build(&self) -> String {
-        format!("cargo build --release -p {}", self.package)
-    }
-
-    /// How it comes to lie beside one that is installed.
-    fn how_to_install(&self) -> String {
-        let name = self.package.trim_start_matches("maulstick-");
-        let parent = if self.package == BENCH {
-            "tests"
-        } else {
-            "tools"
-        };
-        format!("cargo install --path {parent}/{name}")
-    }
-
-    /// Definition for help and completions: it takes whatever the program takes.
-    fn definition(&self) -> clap::Command {
-        let name = self.path.last().copied().unwrap_or_default();
-        let line = Arg::new(LINE)
-            .num_args(0..)
-            .allow_hyphen_values(true)
-            .trailing_var_arg(true)
-            .hide(true)
-            .help("Command line of the program")
-            .value_parser(value_parser!(OsString));
-        let (typed, build) = (self.typed(), self.how_to_build());
-        clap::Command::new(name)
-            .about(self.about)
-            .disable_help_flag(true)
-            .arg(line)
-            .after_help(format!("`{typed} --help`; `{build}` builds it"))
-    }
-}
-
-/// A program with the commands of `tools/` in their groups.
+/// A program with the commands of [`PROGRAMS`] in their groups.
 #[must_use]
 pub fn with_commands(program: clap::Command) -> clap::Command {
-    COMMANDS
+    let commands = PROGRAMS.iter().flat_map(Program::commands);
+    commands.fold(program, |program, command| {
+        if program.find_subcommand(command.get_name()).is_none() {
+            return program.subcommand(command);
+        }
+        let own = command.get_subcommands().cloned();
+        program.mut_subcommand(command.get_name(), |group| group.subcommands(own))
+    })
+}
+
+/// Whether a program has a command.
+fn has_command(program: &Program, path: &[&str]) -> bool {
+    let commands = program.commands();
+    let mut found = commands
         .iter()
-        .fold(program, |program, command| match command.path {
-            [group, _] => {
-                program.mut_subcommand(*group, |group| group.subcommand(command.definition()))
-            }
-            _ => program.subcommand(command.definition()),
-        })
+        .find(|one| path.first() == Some(&one.get_name()));
+    for name in path.iter().skip(1) {
+        found = found.and_then(|group| group.find_subcommand(name));
+    }
+    found.is_some_and(|command| !command.has_subcommands())
 }
 
 /// Runs the program whose command was given; returns where the command is one of this program.
@@ -186,24 +50,23 @@ pub fn run_given(matches: &ArgMatches) -> Result<(), UserError> {
         path.push(name);
         innermost = below;
     }
-    let Some(command) = COMMANDS.iter().find(|command| command.path == path) else {
+    let mut programs = PROGRAMS.iter();
+    let Some(program) = programs.find(|program| has_command(program, &path)) else {
         return Ok(());
     };
-    let line = innermost.get_many::<OsString>(LINE).into_iter().flatten();
-    let overwrite = innermost.get_flag("overwrite").then_some("--overwrite");
-    let error = Command::new(beside(command.package)?)
-        .args(command.path)
-        .args(overwrite)
-        .args(line)
-        .exec();
-    let typed = command.typed();
+    let line = std::env::args_os().skip(1);
+    let error = Command::new(beside(program.package)?).args(line).exec();
+    let typed = format!("maulstick {}", path.join(" "));
     Err(if error.kind() == std::io::ErrorKind::NotFound {
-        let (build, install) = (command.how_to_build(), command.how_to_install());
+        let Program {
+            package, folder, ..
+        } = program;
         UserError::failure(format!(
             "`{typed}` is a program of its own, which is not built"
         ))
         .help(format!(
-            "in the folder of the sources: {build}; where maulstick is installed: {install}"
+            "in the folder of the sources: cargo build --release -p {package}; \
+             where maulstick is installed: cargo install --path {folder}"
         ))
     } else {
         UserError::failure(format!("`{typed}` cannot be started: {error}"))
@@ -275,28 +138,22 @@ pub fn clear_files_on_signals() -> Result<(), UserError> {
         .map_err(|error| UserError::failure(format!("cannot watch for signals: {error}")))
 }
 
-/// Commands of a program in `tools/` with their help, as it defines them.
-#[must_use]
-pub fn defined<C: Subcommand>() -> BTreeSet<String> {
-    let (mut found, mut open) = (
-        BTreeSet::new(),
-        vec![(String::new(), ToolLine::<C>::command())],
-    );
-    while let Some((path, command)) = open.pop() {
-        if !command.has_subcommands() {
-            let about = command.get_about().map(ToString::to_string);
-            found.insert(format!("{}: {}", path.trim(), about.unwrap_or_default()));
-        }
-        let below = command.get_subcommands().cloned();
-        open.extend(below.map(|below| (format!("{path} {}", below.get_name()), below)));
-    }
-    found
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// The same, as [`COMMANDS`] lists them.
-#[must_use]
-pub fn listed(package: &str) -> BTreeSet<String> {
-    let own = COMMANDS.iter().filter(|command| command.package == package);
-    own.map(|command| format!("{}: {}", command.path.join(" "), command.about))
-        .collect()
+    #[test]
+    fn a_command_is_found_in_the_program_that_has_it_and_no_group_is() {
+        let having = |path: &[&str]| -> Vec<&str> {
+            let programs = PROGRAMS.iter();
+            let having = programs.filter(|program| has_command(program, path));
+            having.map(|program| program.package).collect()
+        };
+        assert_eq!(having(&["take", "cut"]), ["maulstick-motions"]);
+        assert_eq!(having(&["colour", "fit"]), ["maulstick-fit"]);
+        assert_eq!(having(&["bench"]), ["maulstick-bench"]);
+        for path in [&["take"][..], &["take", "render"], &["cut"], &[]] {
+            assert!(having(path).is_empty(), "{path:?}");
+        }
+    }
 }

@@ -12,10 +12,9 @@ use crate::beside;
 use crate::commands::completions::{self, CompletionsCommand, Headings};
 use crate::commands::edit::{self, DAILY, DailyEdit, LayerEdit, PaletteEdit};
 use crate::commands::{
-    brush, canvas, colour, demo, device, endpoint, nodes, painting, recording, render, schema,
-    snapshot, take, topic,
+    brush, canvas, colour, demo, device, doctor, endpoint, nodes, painting, recording, render,
+    schema, snapshot, take, topic,
 };
-use crate::doctor;
 use crate::processes::{self, NodeCommand};
 use crate::up;
 
@@ -226,7 +225,7 @@ mod tests {
     use maulstick_types::scene::Light;
 
     use super::*;
-    use crate::lamp::changed;
+    use maulstick_painting_setup::lamp::changed;
 
     #[test]
     fn the_command_line_is_consistent() {

@@ -9,25 +9,9 @@
 //! | [`processes`] | the processes of a rig |
 //! | [`page`] | pictures made of patches, pictures and words |
 //! | [`plot`] | curves over two axes |
-//! | [`destination`] | the display or file that colours go to: profile and gamut |
-//! | [`viewing`] | options of light, observer and rule |
 //! | [`swatch`] | colours in the terminal |
-//! | [`backend`] | backend of the paint's steps |
-//! | [`cells`] | the side of the cells that pictures are painted with |
-//! | [`doctor`] | what of this machine keeps a rig from painting well |
-//! | [`document`] | paintings in files |
-//! | [`easel`] | a painting at which a script is followed |
-//! | [`duration`], [`ground`], [`tooth`] | times, grounds and teeth as a painter names them |
-//! | [`kit`] | setup of a take: embedded into it, and extracted from it |
-//! | [`lamp`] | changes of the light |
-//! | [`memory`] | memory that a command allocates at once |
-//! | [`picture`] | pictures that a command reads |
-//! | [`outputs`] | files that are written; none replaces one that is read |
 //! | [`runtime`] | the tokio runtime of commands that wait for many things at once |
-//! | [`script`] | a day at the easel, a step after the other |
-//! | [`paintings`] | the bundled paintings |
 //! | [`panics`] | panics as errors that a user can read |
-//! | [`performance`] | setup that `render` and `up --play` share: take, brush, loads, canvas |
 //!
 //! # The rig
 //!
@@ -50,10 +34,7 @@
 //! `up`, the recorder and `recording replay` wait on a tokio runtime for processes, signals, messages, orders and times at
 //! once. What blocks (a painting that is checked or saved, loads, the keys of a terminal, a recording that is read ahead)
 //! is on the runtime's threads for that. The supervisor itself stays on the main thread: the kernel kills a node when the
-//! thread that started it ends. Threads of this crate's own are:
-//!
-//! - `bridge`, and `viewer` for each viewer of `topic bridge`: sockets that block;
-//! - one that `doctor` tries a real-time priority with, which the thread would keep.
+//! thread that started it ends.
 //!
 //! # Recordings
 //!
@@ -68,23 +49,13 @@ pub mod advice;
 pub mod beside;
 pub mod cli;
 pub mod commands;
-pub mod doctor;
 mod figures;
-pub mod outputs;
-pub mod paintings;
 pub mod panics;
-pub mod performance;
 pub mod processes;
 pub mod runtime;
-pub mod script;
-mod setup;
 pub mod up;
 
 pub use figures::{page, plot, swatch};
-pub use setup::{
-    backend, cells, destination, document, duration, easel, ground, kit, lamp, memory, picture,
-    tooth, viewing,
-};
 
 use maulstick_rig::UserError;
 use maulstick_rig::log::{flush, say};

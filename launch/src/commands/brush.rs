@@ -21,8 +21,8 @@ use crate::commands::client::{Client, Target};
 use crate::commands::edit::{self, BrushEdit};
 use crate::commands::say;
 use crate::commands::{print_json, print_text};
-use crate::outputs::{UsedFile, check_outputs};
-use crate::performance::{brush_file, of_a_brush};
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::{brush_file, of_a_brush};
 
 /// `maulstick brush`.
 #[derive(Subcommand, Clone, Debug)]

@@ -8,7 +8,7 @@ use maulstick_types::Edit;
 
 use crate::commands::client::{Client, Target};
 use crate::commands::say;
-use crate::ground::GroundFile;
+use maulstick_painting_setup::surface::ground::GroundFile;
 
 /// Commands that stand beside the groups as well, each with its group.
 pub const DAILY: [(&str, &str); 4] = [

@@ -3,11 +3,12 @@
 //! | module | commands |
 //! | --- | --- |
 //! | [`edit`] | edits, wherever they are grouped: `brush load`, `layer dry`, `painting undo` |
-//! | [`brush`], `canvas`, `colour`, [`demo`], [`device`], `completions` | those of these names, besides edits |
+//! | [`brush`], `canvas`, `colour`, [`demo`], [`device`], [`doctor`], `completions` | those of these names, besides edits |
 //! | [`painting`] | paintings in files; `new`, `open`, `save-as`, `snapshot` of a running rig |
 //! | `rig` | `node list`, `endpoint`, `schema` |
 //! | `takes` | takes that are made, imported, painted |
 //! | `streams`, [`replay`] | `topic`, `recording` |
+//! | `option_error` | values that options do not take |
 //! | [`table`] | tables as text, for all of them |
 
 pub mod brush;
@@ -16,8 +17,9 @@ pub mod colour;
 pub mod completions;
 pub mod demo;
 pub mod device;
+pub mod doctor;
 pub mod edit;
-pub mod motion;
+mod option_error;
 pub mod painting;
 pub mod replay;
 mod rig;

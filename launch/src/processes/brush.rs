@@ -14,7 +14,7 @@ use maulstick_rig::node_handle::CONFIG_FILE;
 use nix::sys::signal::Signal;
 
 use super::{MOUSE, NodeOptions, PEN, PLAYER, brush_node_name};
-use crate::performance::brush_file;
+use maulstick_painting_setup::brush_file;
 
 /// Options of a brush node.
 #[derive(clap::Args, Debug)]

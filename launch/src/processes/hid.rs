@@ -8,7 +8,7 @@ use maulstick_rig::files::Kind;
 use nix::sys::signal::Signal;
 
 use super::{NodeOptions, device_named};
-use crate::outputs::{UsedFile, check_outputs, named_by};
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs, named_by};
 
 /// Suffix of the name of a device's recorder.
 const RECORDER: &str = "-recorder";

@@ -19,10 +19,10 @@ use maulstick_types::paint::Decision;
 use nix::sys::signal::Signal;
 
 use super::NodeOptions;
-use crate::backend::choose_backend;
-use crate::destination::{VIEW, export};
-use crate::document::{go_on_in_rig, wrong};
-use crate::performance::{library_from, painting_setup, refused};
+use maulstick_painting_setup::backend::choose_backend;
+use maulstick_painting_setup::destination::{VIEW, export};
+use maulstick_painting_setup::document::{go_on_in_rig, wrong};
+use maulstick_painting_setup::{library_from, painting_setup, refused};
 
 /// A paint node that is to stop takes at most so many turns more: it is waited for.
 const LAST_TURNS: u32 = 8;

@@ -10,7 +10,7 @@ use maulstick_types::Mixture;
 use nix::sys::signal::Signal;
 
 use super::{NodeOptions, PLAYER};
-use crate::performance::refused;
+use maulstick_painting_setup::refused;
 
 /// Options of the player.
 #[derive(clap::Args, Debug)]

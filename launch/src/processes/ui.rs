@@ -4,8 +4,8 @@ use maulstick_rig::UserError;
 use nix::sys::signal::Signal;
 
 use super::{MOUSE, NodeOptions, PEN};
-use crate::destination::{VIEW, export};
-use crate::performance::library_from;
+use maulstick_painting_setup::destination::{VIEW, export};
+use maulstick_painting_setup::library_from;
 
 /// Options of the window.
 #[derive(clap::Args, Debug)]

@@ -28,15 +28,15 @@ use maulstick_rig::log::log_to_stderr;
 use maulstick_rig::{UserError, user_devices};
 use maulstick_types::Mixture;
 
-use crate::cells::{check_memory, check_speed, picture_settings};
-use crate::destination::{VIEW, export};
-use crate::document::{Presence, measure, presence, wrong};
-use crate::outputs::{Relayed, UsedFile, check_outputs, named_by};
-use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
 use crate::runtime::{EndSignals, block_on};
 use crate::up::conductor::Performance;
 use crate::up::plan::{Hands, NodeSpec, Window};
 use crate::up::supervisor::{Start, Supervisor, sketch};
+use maulstick_painting_setup::cells::{check_memory, check_speed, picture_settings};
+use maulstick_painting_setup::destination::{VIEW, export};
+use maulstick_painting_setup::document::{Presence, measure, presence, wrong};
+use maulstick_painting_setup::outputs::{Relayed, UsedFile, check_outputs, named_by};
+use maulstick_painting_setup::{PaintingOptions, library_from, painting_setup, refused};
 
 /// Folder of the files embedded in the played take, in the rig's folder.
 const KIT: &str = "kit";
@@ -205,7 +205,7 @@ impl UpOptions {
             .chain(UsedFile::given("the settings", self.rig.as_ref()))
             .chain(document.map(|path| UsedFile::painting(path)))
             .collect();
-        check_outputs(&outputs, &inputs)
+        Ok(check_outputs(&outputs, &inputs)?)
     }
 }
 

@@ -52,59 +52,26 @@ mod thread_cpu;
 mod view;
 mod window;
 
-use std::path::PathBuf;
-
-use clap::builder::PossibleValuesParser;
-use clap::{Args, Parser};
-use maulstick_models::model_names;
+use clap::Parser;
+use maulstick_models::MODELS;
 use maulstick_rig::UserError;
+use maulstick_tool_options::bench::{BACKEND, BenchGroup, BenchOptions};
 
 use crate::measurements::Measurements;
 use crate::report::Report;
 
-/// Paint model that is measured where no other is asked for.
-const MODEL: &str = "impasto";
-/// Backend that computes where no other is asked for.
-const BACKEND: &str = "cpu";
-
 /// The command that this program carries out.
 #[derive(Parser)]
 #[command(name = "maulstick", version)]
-enum Line {
-    /// Run benchmarks against reference programs
-    Bench(Options),
-}
-
-/// Options of `maulstick bench`.
-#[derive(Args)]
-struct Options {
-    /// What to measure: brush, bus, document, frames, haptics, idle, latency, looks, optics, paint, pen,
-    /// recording, render, view, window [default: everything]
-    area: Option<String>,
-    /// Paint model to measure
-    #[arg(long, default_value = MODEL, value_parser = PossibleValuesParser::new(model_names()))]
-    model: String,
-    /// Where its steps are computed
-    #[arg(long, default_value = BACKEND, value_parser = ["cpu", "gpu"])]
-    backend: String,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
-    /// Append the figures to a table of measurements (docs/measurements)
-    #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
-    /// The far end of the bus benchmark
-    #[arg(long, hide = true)]
-    far_end: Option<String>,
-    /// A process of the pen benchmark
-    #[arg(long, hide = true)]
-    pen: Option<String>,
+struct Line {
+    #[command(subcommand)]
+    command: BenchGroup,
 }
 
 /// An area's name and what measures it.
 type Area = (
     &'static str,
-    fn(&mut Report, &Options) -> Result<(), UserError>,
+    fn(&mut Report, &BenchOptions) -> Result<(), UserError>,
 );
 
 const AREAS: [Area; 15] = [
@@ -130,14 +97,14 @@ const AREAS: [Area; 15] = [
 ];
 
 fn main() {
-    let Line::Bench(options) = Line::parse();
+    let BenchGroup::Bench(options) = Line::parse().command;
     if let Err(fault) = measure(&options) {
         eprintln!("{fault}");
         std::process::exit(fault.code);
     }
 }
 
-fn measure(options: &Options) -> Result<(), UserError> {
+fn measure(options: &BenchOptions) -> Result<(), UserError> {
     if let Some(locator) = &options.far_end {
         return bus::far_end(locator);
     }
@@ -169,9 +136,9 @@ fn measure(options: &Options) -> Result<(), UserError> {
 }
 
 /// The command that measures an area in the same way.
-fn command(area: &str, options: &Options) -> String {
+fn command(area: &str, options: &BenchOptions) -> String {
     let mut command = format!("maulstick bench {area}");
-    if options.model != MODEL {
+    if options.model != MODELS[0].name {
         command += &format!(" --model {}", options.model);
     }
     if options.backend != BACKEND {

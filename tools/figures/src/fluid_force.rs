@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 use std::io::Write as _;
-use std::path::PathBuf;
 
 use indicatif::ProgressBar;
 use maulstick_fluid_force::Boundary;
@@ -10,52 +9,18 @@ use maulstick_fluid_force::hand::{HandFilter, hand_ticks};
 use maulstick_fluid_force::sweep::{Sample, arc_steps, arc_sweep, noise};
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
+use maulstick_tool_options::figures::{Filter, FluidForceOptions};
 
 use maulstick::commands::table::table;
 use maulstick::commands::write_picture;
-use maulstick::outputs::{UsedFile, check_outputs};
 use maulstick::plot::{Axis, Curve, Panel, plot};
 use maulstick::say;
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
-/// Grids where none are named.
-const GRIDS: [u16; 3] = [32, 64, 128];
 const BOUNDARIES: [Boundary; 2] = [Boundary::Staircase, Boundary::Covered];
 /// Head of the table; [`Kind::Forces`] knows it.
 const HEAD: &str = "grid,boundary,t_s,x_m,y_m,angle_rad,f_drag_n_m,f_perp_n_m,torque_n,\
                     f_drag_filtered_n_m,f_perp_filtered_n_m,torque_filtered_n\n";
-
-/// Filter of the force before the hand.
-#[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Filter {
-    /// Bartlett-Hanning over one period of the solver
-    #[default]
-    Period,
-    /// The dissertation's eleven taps, a millisecond apart
-    Dissertation,
-}
-
-/// Options of `maulstick demo fluid-force`.
-#[derive(clap::Args, Clone, Debug)]
-pub(crate) struct FluidForceOptions {
-    /// Table to write
-    #[arg(short, long, value_name = "CSV")]
-    output: PathBuf,
-    /// Cells a side of the fluid's grids
-    #[arg(
-        long,
-        value_name = "CELLS",
-        value_delimiter = ',',
-        default_values_t = GRIDS,
-        value_parser = clap::value_parser!(u16).range(16..=512)
-    )]
-    grid: Vec<u16>,
-    /// Filter of the force before the hand
-    #[arg(long, value_enum, default_value_t)]
-    filter: Filter,
-    /// Draw the force on the square
-    #[arg(long, value_name = "PNG")]
-    plot: Option<PathBuf>,
-}
 
 /// A sweep on one grid.
 struct Sweep {

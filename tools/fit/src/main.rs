@@ -2,70 +2,29 @@
 
 use std::fmt::Write as _;
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use clap::{Args, Subcommand};
-use maulstick_measure::{Fit, FitOptions, MeasureError, paint_file, parse_surface};
+use maulstick_measure::{Fit, MeasureError, paint_file, parse_surface};
 use maulstick_optics::surface::SurfaceCorrection;
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
 use maulstick_rig::table_file::{MOST_BYTES, read_table};
+use maulstick_tool_options::fit::{FitCommand, FitGroup, FitOptions};
 use serde_json::json;
 
 use maulstick::commands::table::table;
 use maulstick::commands::{print_json, print_text};
-use maulstick::outputs::{UsedFile, check_outputs};
-
-/// The group of the command.
-#[derive(Debug, Subcommand)]
-enum Group {
-    /// Colours
-    #[command(subcommand)]
-    Colour(Colour),
-}
-
-/// The command in its group.
-#[derive(Debug, Subcommand)]
-enum Colour {
-    /// Fit paints to measured reflectances
-    Fit(FitCommand),
-}
-
-/// Options of `maulstick colour fit`.
-#[derive(Args, Clone, Debug)]
-struct FitCommand {
-    /// Table of samples: a column of shares for each paint, a column of reflectances for each
-    /// wavelength (docs/measuring.md)
-    measurements: PathBuf,
-    /// Paint file to write
-    #[arg(short, long, value_name = "CSV")]
-    output: PathBuf,
-    /// Reference white, whose scattering is 1
-    #[arg(long, value_name = "NAME")]
-    white: Option<String>,
-    /// Shares that the samples' surface reflects from outside and from inside
-    #[arg(long, value_name = "K1,K2", value_parser = parse_surface)]
-    surface: Option<SurfaceCorrection>,
-    /// Take the reflectances as internal: no surface correction
-    #[arg(long, conflicts_with = "surface")]
-    no_surface: bool,
-    /// Take the readings as without gloss (45°/0°, 60°, or a sphere with an open trap)
-    #[arg(long)]
-    specular_excluded: bool,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
-}
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 fn main() {
-    maulstick::beside::tool(|Group::Colour(Colour::Fit(options))| run(options));
+    maulstick::beside::tool(|FitGroup::Colour(FitCommand::Fit(options))| run(options));
 }
 
 /// Fits the paints and writes their file.
 ///
 /// # Errors
 /// A [`UserError`] with line and column of the table, or where the file cannot be written.
-fn run(options: &FitCommand) -> Result<i32, UserError> {
+fn run(options: &FitOptions) -> Result<i32, UserError> {
     let path = &options.measurements;
     let text = read_table(path, MOST_BYTES)?;
     let output = &options.output;
@@ -77,9 +36,10 @@ fn run(options: &FitCommand) -> Result<i32, UserError> {
     let surface = if options.no_surface {
         Some(SurfaceCorrection { k1: 0.0, k2: 0.0 })
     } else {
-        options.surface
+        let given = options.surface.as_deref().map(parse_surface).transpose();
+        given.map_err(|error| UserError::usage(error.to_string()).at("--surface"))?
     };
-    let chosen = FitOptions {
+    let chosen = maulstick_measure::FitOptions {
         white: options.white.clone(),
         surface,
         specular_excluded: options.specular_excluded.then_some(true),
@@ -163,14 +123,4 @@ fn as_table(fit: &Fit, output: &Path) -> String {
     )
     .ok();
     text
-}
-
-#[cfg(test)]
-mod tests {
-    use maulstick::beside::{defined, listed};
-
-    #[test]
-    fn maulstick_lists_this_command() {
-        assert_eq!(defined::<super::Group>(), listed("maulstick-fit"));
-    }
 }

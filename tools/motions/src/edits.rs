@@ -2,10 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
 use maulstick_device::{Take, TakeSample, TakeSetup};
-use maulstick_motion::join::PAUSE_S;
-use maulstick_motion::strokes::middle;
 use maulstick_motion::{
     Mirror, MotionError, Pace, Part, Placement, joined, mirrored, retimed, strokes,
 };
@@ -13,179 +10,40 @@ use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 
 use crate::recorded::read_motion;
-use maulstick::commands::motion::{HeadOptions, parse_place, refused};
-
-use crate::TakeFiles;
 use maulstick::commands::write_take;
-use maulstick::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
+use maulstick_tool_options::motion::refused;
+use maulstick_tool_options::motions::{
+    CutOptions, JoinOptions, MirrorAxis, MirrorOptions, MoveOptions, RetimeOptions, RotateOptions,
+    ScaleOptions, TakeFiles,
+};
 
-/// Options of `maulstick take cut`.
-#[derive(Args, Clone, Debug)]
-pub(crate) struct CutOptions {
-    #[command(flatten)]
-    files: TakeFiles,
-    /// Stylus of a recording whose motion is cut, such as pen [default: the only one of a take]
-    #[arg(long, value_name = "DEVICE")]
-    device: Option<String>,
-    /// From so many seconds after its beginning [default: 0]
-    #[arg(long, value_name = "S", conflicts_with = "strokes")]
-    start: Option<f64>,
-    /// To so many seconds after its beginning [default: its end]
-    #[arg(long, value_name = "S", conflicts_with = "strokes")]
-    end: Option<f64>,
-    /// Strokes to keep, by their numbers: 3, or 2-5
-    #[arg(long, value_name = "N|N-M", value_parser = parse_strokes, required_unless_present_any = ["start", "end"])]
-    strokes: Option<[usize; 2]>,
+/// Reads a take, has its motion changed and writes it.
+fn change(
+    files: &TakeFiles,
+    change: impl FnOnce(&[TakeSample], f64) -> Result<Vec<TakeSample>, MotionError>,
+) -> Result<i32, UserError> {
+    change_all(files, None, |take, head_m| {
+        let samples = change(&take.samples, head_m)?;
+        Ok(Take { samples, ..take })
+    })
 }
 
-/// Options of `maulstick take join`.
-#[derive(Args, Clone, Debug)]
-pub(crate) struct JoinOptions {
-    /// Takes, in order, which are not changed
-    #[arg(required = true, num_args = 2..)]
-    takes: Vec<PathBuf>,
-    /// Take to write
-    #[arg(short, long, value_name = "TAKE")]
-    output: PathBuf,
-    /// Pause between two takes at least, .2 to 60 s; a long way takes longer
-    #[arg(long, value_name = "S", default_value_t = PAUSE_S)]
-    pause: f64,
-    #[command(flatten)]
-    head: HeadOptions,
-}
-
-/// A point of the surface about which a motion is changed.
-#[derive(Args, Clone, Copy, Debug)]
-struct AboutOptions {
-    /// Point that stays, mm from the middle of the desk [default: the middle of its strokes]
-    #[arg(long, value_name = "X,Y", value_parser = parse_place, allow_hyphen_values = true)]
-    about: Option<[f64; 2]>,
-}
-
-/// Options of `maulstick take scale`.
-#[derive(Args, Clone, Debug)]
-pub(crate) struct ScaleOptions {
-    #[command(flatten)]
-    files: TakeFiles,
-    /// Factor, .01 to 100
-    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true)]
-    by: f64,
-    #[command(flatten)]
-    about: AboutOptions,
-}
-
-/// Options of `maulstick take rotate`.
-#[derive(Args, Clone, Debug)]
-pub(crate) struct RotateOptions {
-    #[command(flatten)]
-    files: TakeFiles,
-    /// Angle, degrees, counter-clockwise
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
-    by: f64,
-    #[command(flatten)]
-    about: AboutOptions,
-}
-
-/// Options of `maulstick take move`.
-#[derive(Args, Clone, Debug)]
-pub(crate) struct MoveOptions {
-    #[command(flatten)]
-    files: TakeFiles,
-    /// To the right and up, mm
-    #[arg(long, value_name = "X,Y", value_parser = parse_place, allow_hyphen_values = true)]
-    by: [f64; 2],
-}
-
-/// Options of `maulstick take retime`.
-#[derive(Args, Clone, Debug)]
-pub(crate) struct RetimeOptions {
-    #[command(flatten)]
-    files: TakeFiles,
-    /// Rate, .01 to 100: 2 is twice as fast
-    #[arg(
-        long,
-        value_name = "R",
-        required_unless_present = "seconds",
-        allow_negative_numbers = true
-    )]
-    rate: Option<f64>,
-    /// Duration of all of it, s
-    #[arg(
-        long,
-        value_name = "S",
-        conflicts_with = "rate",
-        allow_negative_numbers = true
-    )]
-    seconds: Option<f64>,
-}
-
-/// What a mirror exchanges.
-#[derive(ValueEnum, Clone, Copy, Debug)]
-enum MirrorAxis {
-    /// Left and right
-    X,
-    /// Above and below
-    Y,
-}
-
-/// Options of `maulstick take mirror`.
-#[derive(Args, Clone, Debug)]
-pub(crate) struct MirrorOptions {
-    #[command(flatten)]
-    files: TakeFiles,
-    /// Exchange left and right (x), or above and below (y)
-    #[arg(long, value_name = "AXIS", default_value = "x")]
-    axis: MirrorAxis,
-    #[command(flatten)]
-    about: AboutOptions,
-}
-
-/// Reads `N` or `N-M`.
-fn parse_strokes(text: &str) -> Result<[usize; 2], String> {
-    let number = |part: &str| part.trim().parse::<usize>().ok();
-    let (first, last) = text.split_once('-').unwrap_or((text, text));
-    number(first)
-        .zip(number(last))
-        .map(<[usize; 2]>::from)
-        .ok_or_else(|| format!("'{text}' is neither a number nor a range such as 2-5"))
-}
-
-impl TakeFiles {
-    /// Reads the take, has its motion changed and writes it.
-    fn change(
-        &self,
-        change: impl FnOnce(&[TakeSample], f64) -> Result<Vec<TakeSample>, MotionError>,
-    ) -> Result<i32, UserError> {
-        self.change_all(None, |take, head_m| {
-            let samples = change(&take.samples, head_m)?;
-            Ok(Take { samples, ..take })
-        })
-    }
-
-    /// As [`change`](Self::change), with what the take is painted with.
-    fn change_all(
-        &self,
-        device: Option<&str>,
-        change: impl FnOnce(Take, f64) -> Result<Take, MotionError>,
-    ) -> Result<i32, UserError> {
-        check_outputs(
-            &[UsedFile::new("the take", &self.output).of(Kind::Take)],
-            &[UsedFile::new("the take that stays as it is", &self.take)],
-        )?;
-        let take = read_motion(&self.take, device)?;
-        let head_m = self.head.length_m(&take, &self.take)?;
-        let changed = change(take, head_m).map_err(refused(&self.take))?;
-        write_take(&changed, &self.output)?;
-        Ok(0)
-    }
-}
-
-impl AboutOptions {
-    /// The point, m.
-    fn point(self, samples: &[TakeSample], head_m: f64) -> [f64; 2] {
-        let given = self.about.map(|place| place.map(|mm| 1e-3 * mm));
-        given.unwrap_or_else(|| middle(samples, head_m))
-    }
+/// As [`change`], with what the take is painted with.
+fn change_all(
+    files: &TakeFiles,
+    device: Option<&str>,
+    change: impl FnOnce(Take, f64) -> Result<Take, MotionError>,
+) -> Result<i32, UserError> {
+    check_outputs(
+        &[UsedFile::new("the take", &files.output).of(Kind::Take)],
+        &[UsedFile::new("the take that stays as it is", &files.take)],
+    )?;
+    let take = read_motion(&files.take, device)?;
+    let head_m = files.head.length_m(&take, &files.take)?;
+    let changed = change(take, head_m).map_err(refused(&files.take))?;
+    write_take(&changed, &files.output)?;
+    Ok(0)
 }
 
 pub(crate) fn cut(options: &CutOptions) -> Result<i32, UserError> {
@@ -203,36 +61,34 @@ pub(crate) fn cut(options: &CutOptions) -> Result<i32, UserError> {
             options.end.map_or(Ok(u64::MAX), |end| ns("--end", end))?,
         ]),
     };
-    options
-        .files
-        .change_all(options.device.as_deref(), |take, head_m| {
-            let samples = maulstick_motion::cut(&take.samples, &part, head_m)?;
-            let begin_ns = take.samples.first().map_or(0, |first| first.time_ns);
-            let before = match part {
-                Part::Strokes(numbers) => numbers.start() - 1,
-                Part::Times([from_ns, _]) => {
-                    let all = strokes(&take.samples, head_m).into_iter();
-                    let end = |stroke: &maulstick_motion::Stroke| {
-                        let last = &take.samples[stroke.samples.end - 1];
-                        last.time_ns - begin_ns
-                    };
-                    all.filter(|stroke| end(stroke) < from_ns).count()
-                }
-            };
-            // Strokes load in turn, and the first that is left keeps its own.
-            let setup = take.setup.map(|mut setup| {
-                if !setup.loads.is_empty() {
-                    let by = before % setup.loads.len();
-                    setup.loads.rotate_left(by);
-                }
-                setup
-            });
-            Ok(Take {
-                samples,
-                setup,
-                ..take
-            })
+    change_all(&options.files, options.device.as_deref(), |take, head_m| {
+        let samples = maulstick_motion::cut(&take.samples, &part, head_m)?;
+        let begin_ns = take.samples.first().map_or(0, |first| first.time_ns);
+        let before = match part {
+            Part::Strokes(numbers) => numbers.start() - 1,
+            Part::Times([from_ns, _]) => {
+                let all = strokes(&take.samples, head_m).into_iter();
+                let end = |stroke: &maulstick_motion::Stroke| {
+                    let last = &take.samples[stroke.samples.end - 1];
+                    last.time_ns - begin_ns
+                };
+                all.filter(|stroke| end(stroke) < from_ns).count()
+            }
+        };
+        // Strokes load in turn, and the first that is left keeps its own.
+        let setup = take.setup.map(|mut setup| {
+            if !setup.loads.is_empty() {
+                let by = before % setup.loads.len();
+                setup.loads.rotate_left(by);
+            }
+            setup
+        });
+        Ok(Take {
+            samples,
+            setup,
+            ..take
         })
+    })
 }
 
 pub(crate) fn join(options: &JoinOptions) -> Result<i32, UserError> {
@@ -306,14 +162,14 @@ fn in_turn(each: &[(Vec<String>, usize)]) -> Vec<String> {
 }
 
 pub(crate) fn scale(options: &ScaleOptions) -> Result<i32, UserError> {
-    options.files.change(|samples, head_m| {
+    change(&options.files, |samples, head_m| {
         let about = options.about.point(samples, head_m);
         Placement::scaled(about, options.by).motion(samples, head_m)
     })
 }
 
 pub(crate) fn rotate(options: &RotateOptions) -> Result<i32, UserError> {
-    options.files.change(|samples, head_m| {
+    change(&options.files, |samples, head_m| {
         let about = options.about.point(samples, head_m);
         Placement::turned(about, options.by.to_radians()).motion(samples, head_m)
     })
@@ -322,9 +178,9 @@ pub(crate) fn rotate(options: &RotateOptions) -> Result<i32, UserError> {
 pub(crate) fn shift(options: &MoveOptions) -> Result<i32, UserError> {
     let by = options.by.map(|mm| 1e-3 * mm);
     let place = Placement::moved(by);
-    options
-        .files
-        .change(|samples, head_m| place.motion(samples, head_m))
+    change(&options.files, |samples, head_m| {
+        place.motion(samples, head_m)
+    })
 }
 
 pub(crate) fn retime(options: &RetimeOptions) -> Result<i32, UserError> {
@@ -332,7 +188,7 @@ pub(crate) fn retime(options: &RetimeOptions) -> Result<i32, UserError> {
         (_, Some(seconds)) => Pace::Length(seconds),
         (rate, None) => Pace::Rate(rate.unwrap_or(1.0)),
     };
-    options.files.change(|samples, _| retimed(samples, pace))
+    change(&options.files, |samples, _| retimed(samples, pace))
 }
 
 pub(crate) fn mirror(options: &MirrorOptions) -> Result<i32, UserError> {
@@ -340,7 +196,7 @@ pub(crate) fn mirror(options: &MirrorOptions) -> Result<i32, UserError> {
         MirrorAxis::X => Mirror::X,
         MirrorAxis::Y => Mirror::Y,
     };
-    options.files.change(|samples, head_m| {
+    change(&options.files, |samples, head_m| {
         let about = options.about.point(samples, head_m);
         mirrored(samples, axis, about)
     })
@@ -365,14 +221,5 @@ mod tests {
             in_turn(&[(Vec::new(), 1), (loads("a b"), 2)]),
             loads("a a b")
         );
-    }
-
-    #[test]
-    fn numbers_of_strokes_are_read() {
-        assert_eq!(parse_strokes("3"), Ok([3, 3]));
-        assert_eq!(parse_strokes("2-5"), Ok([2, 5]));
-        for wrong in ["", "a", "2-", "-3", "1.5"] {
-            assert!(parse_strokes(wrong).is_err(), "{wrong}");
-        }
     }
 }

@@ -1,8 +1,5 @@
 //! Strokes of a take, as a list.
 
-use std::path::PathBuf;
-
-use clap::Args;
 use maulstick_device::Take;
 use maulstick_motion::strokes::bounds;
 use maulstick_motion::{Stroke, strokes};
@@ -10,24 +7,9 @@ use maulstick_rig::UserError;
 use serde_json::json;
 
 use crate::recorded::read_motion;
-use maulstick::commands::motion::HeadOptions;
 use maulstick::commands::table::table;
 use maulstick::commands::{print_json, print_text, say};
-
-/// Options of `maulstick take strokes`.
-#[derive(Args, Clone, Debug)]
-pub(crate) struct InfoOptions {
-    /// Take, or recording
-    take: PathBuf,
-    /// Stylus of a recording, such as pen
-    #[arg(long, value_name = "DEVICE")]
-    device: Option<String>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
-    #[command(flatten)]
-    head: HeadOptions,
-}
+use maulstick_tool_options::motions::StrokesOptions;
 
 /// Measures of a stroke.
 struct Measures {
@@ -57,7 +39,7 @@ impl Measures {
     }
 }
 
-pub(crate) fn run(options: &InfoOptions) -> Result<i32, UserError> {
+pub(crate) fn run(options: &StrokesOptions) -> Result<i32, UserError> {
     let take = read_motion(&options.take, options.device.as_deref())?;
     let head_m = options.head.length_m(&take, &options.take)?;
     let strokes = strokes(&take.samples, head_m);

@@ -10,7 +10,7 @@ use maulstick_tables::{HeadingLine, Separator, Table, TableError, decode};
 use usvg::tiny_skia_path::PathSegment;
 use usvg::{Group, Node, Options, Tree};
 
-use maulstick::commands::motion::refused;
+use maulstick_tool_options::motion::refused;
 
 /// Length of a CSS pixel, m: 96 an inch.
 const PIXEL_M: f64 = 0.0254 / 96.0;

@@ -2,52 +2,26 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Subcommand};
 use maulstick_document::DocumentError;
 use maulstick_painting::history::TilePlace;
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, Unfinished, check_writable};
 use maulstick_salvage::{SalvageError, SalvageReport, recover, temporary_path};
+use maulstick_tool_options::recover::{RecoverCommand, RecoverGroup, RecoverOptions};
 use maulstick_types::scene::{CANVAS, PALETTE};
 use serde_json::json;
 
 use maulstick::commands::{print_json, progress, progress_bar};
-use maulstick::document::wrong;
 use maulstick::say;
+use maulstick_painting_setup::document::wrong;
 
 /// At most so many names are printed of a kind.
 const NAMES: usize = 20;
 
-/// The group of the command.
-#[derive(Debug, Subcommand)]
-enum Group {
-    /// Paintings
-    #[command(subcommand)]
-    Painting(Painting),
-}
-
-/// The command in its group.
-#[derive(Debug, Subcommand)]
-enum Painting {
-    /// Recover what is intact in a damaged painting
-    Recover(RecoverOptions),
-}
-
-/// Options of `maulstick painting recover`.
-#[derive(Args, Clone, Debug)]
-struct RecoverOptions {
-    /// Damaged painting, which is not changed
-    file: PathBuf,
-    /// Painting to write
-    #[arg(short, long, value_name = "NEW.maul")]
-    output: PathBuf,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
-}
-
 fn main() {
-    maulstick::beside::tool(|Group::Painting(Painting::Recover(options))| run(options));
+    maulstick::beside::tool(|RecoverGroup::Painting(RecoverCommand::Recover(options))| {
+        run(options)
+    });
 }
 
 /// Recovers a painting.
@@ -200,14 +174,7 @@ fn list(names: &[String]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use maulstick::beside::{defined, listed};
-
     use super::*;
-
-    #[test]
-    fn maulstick_lists_this_command() {
-        assert_eq!(defined::<Group>(), listed("maulstick-recover"));
-    }
 
     #[test]
     fn a_long_list_is_cut_and_counted() {

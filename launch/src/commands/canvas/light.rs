@@ -13,7 +13,7 @@ use serde_json::json;
 use crate::commands::client::{Client, Feed, Target};
 use crate::commands::print_json;
 use crate::commands::say;
-use crate::lamp::changed;
+use maulstick_painting_setup::lamp::changed;
 
 /// Options of `maulstick canvas light`; what is not given stays as it is.
 #[derive(Args, Clone, Debug)]

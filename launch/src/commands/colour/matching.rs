@@ -10,9 +10,9 @@ use maulstick_rig::UserError;
 use serde_json::{Value, json};
 
 use crate::commands::{print_json, print_text};
-use crate::performance::{library_from, refused};
 use crate::swatch::{Terminal, hex};
-use crate::viewing::ViewingOptions;
+use maulstick_painting_setup::viewing::ViewingOptions;
+use maulstick_painting_setup::{library_from, refused};
 
 /// Options of `maulstick colour match`.
 #[derive(Args, Clone, Debug)]

@@ -8,10 +8,11 @@ use maulstick_optics::{Blend, Coat, Layer, PaintLibrary, Seen, Spectrum};
 use maulstick_rig::UserError;
 use serde_json::json;
 
+use crate::commands::option_error::{OptionError, number_within};
 use crate::commands::{print_json, print_text};
-use crate::performance::{library_from, mixture_of};
 use crate::swatch::{Terminal, in_words, sparkline};
-use crate::viewing::ViewingOptions;
+use maulstick_painting_setup::viewing::ViewingOptions;
+use maulstick_painting_setup::{library_from, mixture_of};
 
 /// Options of `maulstick colour mix`.
 #[derive(Args, Clone, Debug)]
@@ -50,25 +51,20 @@ pub struct FilmOptions {
     saunderson: bool,
 }
 
-fn number(text: &str, range: std::ops::RangeInclusive<f64>, what: &str) -> Result<f64, String> {
-    let value = text.parse().ok().filter(|value| range.contains(value));
-    let (low, high) = (range.start(), range.end());
-    value.ok_or_else(|| format!("'{text}' is no {what} from {low} to {high}"))
+fn thickness(text: &str) -> Result<f64, OptionError> {
+    number_within(text, 0.0..=100_000.0, "thickness in µm")
 }
 
-fn thickness(text: &str) -> Result<f64, String> {
-    number(text, 0.0..=100_000.0, "thickness in µm")
+fn share(text: &str) -> Result<f64, OptionError> {
+    number_within(text, 0.0..=1.0, "share")
 }
 
-fn share(text: &str) -> Result<f64, String> {
-    number(text, 0.0..=1.0, "share")
-}
-
-fn ground(text: &str) -> Result<f64, String> {
+fn ground(text: &str) -> Result<f64, OptionError> {
     match text {
         "white" => Ok(1.0),
         "black" => Ok(0.0),
-        _ => number(text, 0.0..=1.0, "reading").map_err(|what| what + ", nor white or black"),
+        _ => number_within(text, 0.0..=1.0, "reading")
+            .map_err(|_| OptionError::unexpected(text, "white, black, or a reading from 0 to 1")),
     }
 }
 

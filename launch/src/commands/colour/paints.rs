@@ -8,8 +8,8 @@ use maulstick_rig::UserError;
 use serde_json::json;
 
 use crate::commands::{print_json, print_text};
-use crate::performance::library_from;
 use crate::swatch::{Terminal, hex};
+use maulstick_painting_setup::library_from;
 
 /// Options of `maulstick colour paints`.
 #[derive(Args, Clone, Debug)]

@@ -89,10 +89,7 @@ fn row(command: &Command, path: &str) -> [String; 3] {
         !option.is_positional() && !option.is_hide_set() && !is_common
     });
     let options: Vec<_> = options.map(option).collect();
-    // A command of a program beside says where its options are.
-    let elsewhere = command.get_after_help().map(ToString::to_string);
-    let options = elsewhere.unwrap_or_else(|| options.join(", "));
-    [format!("`{usage}`"), about(command), options]
+    [format!("`{usage}`"), about(command), options.join(", ")]
 }
 
 fn is_list(argument: &Arg) -> bool {

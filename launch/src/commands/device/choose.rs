@@ -8,6 +8,7 @@ use maulstick_rig::UserError;
 use maulstick_rig::config::{ACTIONS, FORCES};
 
 use crate::commands::client::Target;
+use crate::commands::option_error::OptionError;
 use crate::commands::say;
 
 /// Options of `maulstick device use`.
@@ -48,15 +49,16 @@ pub struct UseOptions {
 struct PressureCurve(Vec<[f64; 2]>);
 
 impl FromStr for PressureCurve {
-    type Err = String;
+    type Err = OptionError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, OptionError> {
         let point = |word: &str| {
             let (sensed, given) = word.split_once(',')?;
             Some([sensed.parse().ok()?, given.parse().ok()?])
         };
         let point = |word| {
-            point(word).ok_or_else(|| format!("'{word}' is no point as in \"0,0 0.5,0.3 1,1\""))
+            let expected = "a point as in \"0,0 0.5,0.3 1,1\"";
+            point(word).ok_or_else(|| OptionError::unexpected(word, expected))
         };
         text.split_whitespace()
             .map(point)
@@ -107,7 +109,7 @@ mod tests {
         let points = vec![[0.0, 0.0], [0.5, 0.3], [1.0, 1.0]];
         assert_eq!(curve("0,0 0.5,.3  1,1"), Ok(points));
         for wrong in ["0,0 1", "0,0 a,1", "0;0"] {
-            assert!(curve(wrong).expect_err(wrong).contains("is no point"));
+            assert!(curve(wrong).is_err(), "{wrong}");
         }
     }
 }

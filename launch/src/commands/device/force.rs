@@ -17,10 +17,11 @@ use maulstick_types::haptics::{ContactModel, ForceLaw};
 use serde_json::json;
 
 use crate::commands::force_order::{Order, give};
+use crate::commands::option_error::{OptionError, number_within};
 use crate::commands::{print_text, write_picture};
-use crate::outputs::{UsedFile, check_outputs};
-use crate::performance::brush_file;
 use crate::plot::{Axis, Curve, Panel, from_zero, plot};
+use maulstick_painting_setup::brush_file;
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// A law of force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -97,8 +98,8 @@ const DEEPEST_MM: f64 = 1000.0;
 /// Flattest pose of a brush for which its head is solved, degrees.
 const FLATTEST_SOLVED: f64 = 80.0;
 
-fn numbers(text: &str, within: impl Fn(f64) -> bool, what: &str) -> Result<List, String> {
-    let wrong = || format!("'{text}' is not {what}");
+fn numbers(text: &str, within: impl Fn(f64) -> bool, expected: &str) -> Result<List, OptionError> {
+    let wrong = || OptionError::unexpected(text, expected);
     let one = |part: &str| {
         part.trim()
             .parse()
@@ -109,7 +110,7 @@ fn numbers(text: &str, within: impl Fn(f64) -> bool, what: &str) -> Result<List,
     list.map(List).ok_or_else(wrong)
 }
 
-fn depths(text: &str) -> Result<List, String> {
+fn depths(text: &str) -> Result<List, OptionError> {
     let what = "depths from 0 to 1000 mm, such as 0..40 or 0,5,10";
     let within = |mm: f64| (0.0..=DEEPEST_MM).contains(&mm);
     let Some((from, to)) = text.split_once("..") else {
@@ -127,12 +128,12 @@ fn depths(text: &str) -> Result<List, String> {
             let place = |i: usize| (from + STEP_MM * i as f64).min(*to);
             Ok(List((0..=steps).map(place).collect()))
         }
-        ([_], [_]) => Err(format!("'{text}': FROM must be less than TO, as in 0..40")),
-        _ => Err(format!("'{text}' is not {what}")),
+        ([_], [_]) => Err(OptionError::Backwards(text.to_owned())),
+        _ => Err(OptionError::unexpected(text, what)),
     }
 }
 
-fn angles(text: &str) -> Result<List, String> {
+fn angles(text: &str) -> Result<List, OptionError> {
     let within = |degrees: f64| (0.0..=90.0).contains(&degrees);
     numbers(
         text,
@@ -141,9 +142,8 @@ fn angles(text: &str) -> Result<List, String> {
     )
 }
 
-fn stiffness(text: &str) -> Result<f64, String> {
-    let value = text.parse().ok().filter(|n: &f64| (0.0..=1e6).contains(n));
-    value.ok_or_else(|| format!("'{text}' is not a stiffness from 0 to 1000000 N/m"))
+fn stiffness(text: &str) -> Result<f64, OptionError> {
+    number_within(text, 0.0..=1e6, "stiffness in N/m")
 }
 
 /// The force at a depth.
@@ -341,8 +341,8 @@ mod tests {
         assert_eq!(list("0..1.2"), Ok(vec![0.0, 0.5, 1.0, 1.2]));
         assert_eq!(list("0..40").map(|list| list.len()), Ok(81));
         assert_eq!(list("3, 1.5, 3"), Ok(vec![1.5, 3.0]));
-        let same = list("5..5").expect_err("no range");
-        assert!(same.contains("FROM must be less than TO"), "{same}");
+        let backwards = OptionError::Backwards("5..5".into());
+        assert_eq!(list("5..5"), Err(backwards));
         for text in [
             "", "5..1", "1..", "0..1..2", "-1..2", "0..nan", "0..2000", "0,,1",
         ] {

@@ -10,6 +10,7 @@ use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::stylus::{StylusInfo, axes};
 
 use crate::commands::client::{Client, Target};
+use crate::commands::option_error::OptionError;
 use crate::commands::{client, print_text};
 
 /// A command to the force of a device.
@@ -74,14 +75,15 @@ const ANSWER: Duration = Duration::from_secs(3);
 /// After the first, others come this soon.
 const TOGETHER: Duration = Duration::from_millis(300);
 
-fn share(text: &str) -> Result<f64, String> {
+fn share(text: &str) -> Result<f64, OptionError> {
     let (number, unit) = match text.trim().strip_suffix('%') {
         Some(number) => (number.trim(), 0.01),
         None => (text.trim(), 1.0),
     };
     let share = number.parse().ok().map(|value: f64| value * unit);
     let good = share.filter(|share| (0.0..=1.0).contains(share));
-    good.ok_or_else(|| format!("'{text}' is not a share from 0 to 100 %, such as 60% or 0.6"))
+    let expected = "a share from 0 to 100 %, such as 60% or 0.6";
+    good.ok_or_else(|| OptionError::unexpected(text, expected))
 }
 
 /// Sends a request to devices and prints their resulting state.

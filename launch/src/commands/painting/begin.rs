@@ -8,10 +8,11 @@ use maulstick_rig::{UserError, whole_path};
 use maulstick_types::command::{NewCanvas, RigCommand};
 use maulstick_types::values::MaterialName;
 
-use crate::cells::check_speed;
 use crate::commands::client::{Client, Target};
 use crate::commands::open::LONGEST;
+use crate::commands::option_error::{OptionError, sides};
 use crate::commands::say;
+use maulstick_painting_setup::cells::check_speed;
 
 /// Options of `maulstick painting new`.
 #[derive(Args, Clone, Debug)]
@@ -49,11 +50,8 @@ pub struct NewOptions {
 }
 
 /// Reads `WxH`.
-fn parse_cm(text: &str) -> Result<[f64; 2], String> {
-    let wrong = || format!("'{text}' is not a size in cm such as 40x30");
-    let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
-    let parse = |side: &str| side.trim().parse::<f64>().map_err(|_| wrong());
-    Ok([parse(width)?, parse(height)?])
+fn parse_cm(text: &str) -> Result<[f64; 2], OptionError> {
+    sides(text, "a size in cm such as 40x30")
 }
 
 /// Creates a painting and opens it.
@@ -68,9 +66,10 @@ pub fn run(options: &NewOptions) -> Result<i32, UserError> {
         width_m: width * 1e-2,
         height_m: height * 1e-2,
         cell_m: 1e-3 / options.cells_per_mm,
-        ground: match is_path(&options.ground) {
-            true => MaterialName::new(whole_path(Path::new(&options.ground))?)?,
-            false => MaterialName::new(&*options.ground)?,
+        ground: if is_path(&options.ground) {
+            MaterialName::new(whole_path(Path::new(&options.ground))?)?
+        } else {
+            MaterialName::new(&*options.ground)?
         },
         tooth: MaterialName::new(&*options.tooth)?,
         tooth_seed: options.seed,

@@ -15,9 +15,9 @@ use maulstick_types::values::VersionName;
 use serde_json::json;
 
 use crate::commands::{print_json, say, write_picture};
-use crate::document::{read, wrong};
-use crate::outputs::{UsedFile, check_outputs};
-use crate::performance::refused;
+use maulstick_painting_setup::document::{read, wrong};
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::refused;
 
 /// Bytes of a cell in two pictures, and in the one that has both and their difference.
 const PIXEL_BYTES: u64 = 5 * 3;
@@ -42,7 +42,7 @@ pub(super) fn compare(
     let mut sequencer = opened.sequencer().map_err(refused)?;
     let cells = sequencer.painting().scene().surfaces[0].cells;
     let cells = u64::from(cells[0]) * u64::from(cells[1]);
-    crate::memory::check("the comparison", cells * PIXEL_BYTES)?;
+    maulstick_painting_setup::memory::check("the comparison", cells * PIXEL_BYTES)?;
     // An open step is finished first.
     sequencer.painting_mut().commit();
     let pictures = [seen(&mut sequencer, one)?, seen(&mut sequencer, other)?];

@@ -17,8 +17,8 @@ use maulstick_types::scene::{CANVAS, PALETTE};
 use maulstick_types::values::ModelName;
 
 use crate::commands::say;
-use crate::document::{copy_closed, go_on, read, wrong};
-use crate::performance::refused;
+use maulstick_painting_setup::document::{copy_closed, go_on, read, wrong};
+use maulstick_painting_setup::refused;
 
 /// Options of `maulstick painting convert`.
 #[derive(Args, Clone, Debug)]

@@ -14,8 +14,8 @@ use serde_json::{Value, json};
 
 use super::wall_time::{utc, utc_seconds};
 use crate::commands::{print_json, progress, progress_bar, say};
-use crate::document::{read, wrong};
-use crate::performance::refused;
+use maulstick_painting_setup::document::{read, wrong};
+use maulstick_painting_setup::refused;
 
 /// Options of `maulstick painting info`.
 #[derive(Args, Clone, Debug)]

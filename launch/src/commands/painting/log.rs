@@ -14,7 +14,7 @@ use super::timelapse::no_record;
 use super::wall_time::{utc, utc_seconds};
 use crate::commands::table::table;
 use crate::commands::{print_json, print_text};
-use crate::document::{read, wrong};
+use maulstick_painting_setup::document::{read, wrong};
 
 /// Characters of a line of the log at most, but for JSON.
 const LINE: usize = 160;

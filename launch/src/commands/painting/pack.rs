@@ -8,7 +8,7 @@ use maulstick_rig::UserError;
 use maulstick_rig::size::show_bytes;
 
 use crate::commands::{progress, progress_bar, say};
-use crate::document::wrong;
+use maulstick_painting_setup::document::wrong;
 
 /// Options of `maulstick painting pack`.
 #[derive(Args, Clone, Debug)]

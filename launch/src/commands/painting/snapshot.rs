@@ -11,7 +11,7 @@ use serde_json::json;
 use crate::commands::client::{Client, Target};
 use crate::commands::open::LONGEST;
 use crate::commands::{print_json_line, say};
-use crate::outputs::{Relayed, UsedFile, check_outputs};
+use maulstick_painting_setup::outputs::{Relayed, UsedFile, check_outputs};
 
 /// Options of `maulstick snapshot`.
 #[derive(Args, Clone, Debug)]

@@ -13,8 +13,8 @@ use serde_json::json;
 
 use crate::commands::client::{Client, Target};
 use crate::commands::{print_json, say};
-use crate::document::{go_on, there, wrong};
-use crate::performance::refused;
+use maulstick_painting_setup::document::{go_on, there, wrong};
+use maulstick_painting_setup::refused;
 
 use super::compare::compare;
 
@@ -87,7 +87,7 @@ pub(super) fn run(options: &VersionsOptions) -> Result<i32, UserError> {
         return compare(path, [one, other], output, options.json);
     }
     let Some(edit) = edit else {
-        let (_document, opened) = crate::document::read(path)?;
+        let (_document, opened) = maulstick_painting_setup::document::read(path)?;
         return list(
             opened.sequencer().map_err(refused)?.painting().scene(),
             options.json,

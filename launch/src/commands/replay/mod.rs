@@ -20,8 +20,8 @@ use tokio::runtime::Handle;
 use self::orders::{Orders, parse_rate, parse_strength};
 use self::reports::Reports;
 use crate::commands::client::Target;
-use crate::commands::motion::{HeadOptions, parse_place};
 use crate::runtime::{EndSignals, block_on, exit_code};
+use maulstick_tool_options::motion::{HeadOptions, parse_place};
 
 /// Options of `maulstick recording replay`.
 #[derive(Args, Clone, Debug)]

@@ -4,11 +4,13 @@ use std::future::pending;
 use std::io::{BufRead as _, IsTerminal as _};
 
 use console::{Key, Term};
-use maulstick_device::player::{Rate, RateError};
+use maulstick_device::player::Rate;
 use maulstick_recorder::{Order, RATES, ReplayReport};
 use nix::sys::termios::{SetArg, Termios, tcgetattr, tcsetattr};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::task::spawn_blocking;
+
+use crate::commands::option_error::{OptionError, number_within};
 
 /// Seconds that an arrow key goes.
 const SKIP_S: f64 = 5.0;
@@ -122,11 +124,14 @@ fn read_keys(send: &UnboundedSender<Order>) {
 }
 
 /// An order as a line.
-fn parse(line: &str) -> Result<Order, String> {
+fn parse(line: &str) -> Result<Order, OptionError> {
     let (word, rest) = line.trim().split_once(' ').unwrap_or((line.trim(), ""));
     let number = || match rest.trim().parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
-        _ => Err(format!("'{line}' lacks a number of seconds")),
+        _ => Err(OptionError::unexpected(
+            line,
+            format!("{word} with a number of seconds"),
+        )),
     };
     match word {
         "pause" => Ok(Order::Pause),
@@ -136,8 +141,9 @@ fn parse(line: &str) -> Result<Order, String> {
         "skip" => number().map(Order::Skip),
         "rate" => parse_rate(rest.trim()).map(Order::Rate),
         "strength" => parse_strength(rest.trim()).map(Order::Strength),
-        _ => Err(format!(
-            "'{line}' is none of pause, step, seek S, skip S, rate R, strength P, end"
+        _ => Err(OptionError::unexpected(
+            line,
+            "pause, step, seek S, skip S, rate R, strength P or end",
         )),
     }
 }
@@ -145,25 +151,24 @@ fn parse(line: &str) -> Result<Order, String> {
 /// A rate within [`RATES`], or `max`.
 ///
 /// # Errors
-/// What is wrong with it.
-pub(super) fn parse_rate(text: &str) -> Result<Rate, String> {
-    let rate: Rate = text.parse().map_err(|error: RateError| error.to_string())?;
-    match rate {
-        Rate::Times(rate) if !RATES.contains(&rate) => {
-            Err(format!("{rate} is no rate from .1 to 100, nor 'max'"))
-        }
-        rate => Ok(rate),
+/// An [`OptionError`] for another text.
+pub(super) fn parse_rate(text: &str) -> Result<Rate, OptionError> {
+    match text.parse() {
+        Ok(Rate::Times(rate)) if RATES.contains(&rate) => Ok(Rate::Times(rate)),
+        Ok(Rate::Max) => Ok(Rate::Max),
+        _ => Err(OptionError::unexpected(
+            text,
+            "a rate from .1 to 100, or max",
+        )),
     }
 }
 
 /// A strength from 0 to 1.
 ///
 /// # Errors
-/// What is wrong with it.
-pub(super) fn parse_strength(text: &str) -> Result<f64, String> {
-    let strength = text.parse().ok();
-    let good = strength.filter(|strength| (0.0..=1.0).contains(strength));
-    good.ok_or_else(|| format!("'{text}' is no strength from 0 to 1"))
+/// An [`OptionError`] for another text.
+pub(super) fn parse_strength(text: &str) -> Result<f64, OptionError> {
+    number_within(text, 0.0..=1.0, "strength")
 }
 
 #[cfg(test)]

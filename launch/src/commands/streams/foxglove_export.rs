@@ -10,7 +10,8 @@ use maulstick_rig::files::{Kind, write_whole};
 use maulstick_streams::recording::Topic;
 use maulstick_streams::{Recording, RecordingWriter};
 
-use super::{fault, recording::decoded};
+use super::fault;
+use super::message_lines::decoded;
 
 /// Writes the messages of topics, by the numbers of their channels, that arrived in a range of times, rig clock, ns;
 /// returns how many.

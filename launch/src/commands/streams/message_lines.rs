@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use maulstick_rig::UserError;
 use maulstick_streams::Value;
+use maulstick_streams::recording::{RecordedMessage, Topic};
 use maulstick_types::Header;
 use serde_json::{Value as Json, json};
 
@@ -69,6 +71,18 @@ fn quoted(cell: &str) -> String {
         true => format!("\"{}\"", cell.replace('"', "\"\"")),
         false => cell.to_owned(),
     }
+}
+
+/// What a message holds.
+///
+/// # Errors
+/// A [`UserError`] where it cannot be decoded.
+pub(super) fn decoded(topic: &Topic, message: &RecordedMessage) -> Result<Value, UserError> {
+    topic.decode(&message.bytes).map_err(|error| {
+        let seq = message.header.seq;
+        UserError::failure(format!("{}, message {seq}: {error}", topic.name))
+            .help("a newer version of Maulstick may know it")
+    })
 }
 
 #[cfg(test)]

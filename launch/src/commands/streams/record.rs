@@ -12,8 +12,8 @@ use tokio::runtime::Handle;
 
 use super::recorder_words::LogFormat;
 use crate::commands::client::Target;
-use crate::outputs::{UsedFile, check_outputs};
 use crate::runtime::{EndSignals, block_on};
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick recording record`.
 #[derive(Args, Clone, Debug)]

@@ -13,12 +13,12 @@ use maulstick_streams::topic_pattern::matches;
 use maulstick_streams::{Recording, Value};
 
 use super::foxglove_export;
-use super::message_lines::{MessageLine, head};
+use super::message_lines::{MessageLine, decoded, head};
 use super::record::{self, RecordOptions};
 use super::recording_info::info;
 use crate::commands::replay::{self, ReplayOptions};
 use crate::commands::say;
-use crate::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Subcommands of `maulstick recording`.
 #[derive(Subcommand, Clone, Debug)]
@@ -210,18 +210,6 @@ impl ExportOptions {
         let what = format!("nothing was recorded from {} s to {end} s", self.start);
         Err(UserError::usage(what).help(format!("the recording is {long:.3} s long")))
     }
-}
-
-/// What a message holds.
-///
-/// # Errors
-/// A [`UserError`] where it cannot be decoded.
-pub(super) fn decoded(topic: &Topic, message: &RecordedMessage) -> Result<Value, UserError> {
-    topic.decode(&message.bytes).map_err(|error| {
-        let seq = message.header.seq;
-        UserError::failure(format!("{}, message {seq}: {error}", topic.name))
-            .help("a newer version of Maulstick may know it")
-    })
 }
 
 /// Columns of the messages of topics: those of all alternatives and lists that are there, in the order in which they come.

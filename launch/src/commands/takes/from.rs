@@ -20,8 +20,8 @@ use maulstick_types::paint::Entry;
 use super::painting_record::PaintingRecord;
 use super::take_writer::{TakeOrigin, TakeWriter};
 use crate::commands::say;
-use crate::document::wrong;
-use crate::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::document::wrong;
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick take from`.
 #[derive(Args, Clone, Debug)]
@@ -56,62 +56,22 @@ fn is_rare(topic: &str) -> bool {
 /// A [`UserError`] where the recording lacks something, or the take cannot be written.
 pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
     let path = &options.recording;
-    let bounds = [options.start, options.end.unwrap_or(f64::MAX)];
-    if !(bounds[0] >= 0.0 && bounds[1] > bounds[0]) {
-        let what = format!("--start {} is not before --end", options.start);
-        return Err(UserError::usage(what).help("choose seconds after the beginning"));
-    }
     let mut session = Source::open(path)?;
-    let length_s = session.length_ns() as f64 * 1e-9;
-    if length_s == 0.0 {
-        return Err(
-            UserError::usage("nothing was painted in it since its beginning")
-                .at(path.display().to_string()),
-        );
-    }
-    if bounds[0] >= length_s {
-        return Err(
-            UserError::usage(format!("--start {} is behind its end", bounds[0]))
-                .at(path.display().to_string())
-                .help(session.length_in_words()),
-        );
-    }
+    let range_ns = options.range_ns(&session)?;
     let output = UsedFile::new("the take", &options.output).of(Kind::Take);
     check_outputs(&[output], &[session.used(path)])?;
-    let [start_ns, end_ns] = bounds.map(|seconds| match seconds {
-        f64::MAX => u64::MAX,
-        seconds => (seconds * 1e9) as u64,
-    });
     let folder = tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
     let begin = folder.path().join(PAINTING);
-    session.write_painting(&begin)?;
-    let (document, mut sequencer, since) = open_begin(&begin)?;
-    let mut brushes = Vec::new();
-    if start_ns > 0 {
-        session.follow(&mut sequencer, start_ns, &mut |sequencer, _, event| {
-            if let Event::Accepted(record) = event {
-                if let Accepted::Entry(Entry::Brush { brush, .. }) = &record.what {
-                    brushes.push(brush.clone());
-                }
-                sequencer.replay(record);
-            }
-            Ok(())
-        })?;
-        document.write_checkpoint(Checkpoint::of(&mut sequencer, since));
-    }
-    document.close().map_err(|error| wrong(&begin, &error))?;
-    let painting = std::fs::read(&begin).map_err(|error| UserError::reading(&begin, &error))?;
-    let mut origin = session.origin()?;
-    origin.files.insert(PAINTING.to_owned(), painting);
-    origin.brushes.extend(brushes);
+    let (origin, mut sequencer) = begin_at(&mut session, &begin, range_ns[0])?;
     let mut counts = Counts::default();
     let fault = RefCell::new(None);
     let written = write_whole(&options.output, Kind::Take, |file| {
         let mut take = TakeWriter::begin(file, origin)?;
+        let failed = |error| UserError::writing(&options.output, &error);
         // What is sent rarely, as it was at the start.
         let mut rare = BTreeMap::new();
-        let followed = session.follow(&mut sequencer, end_ns, &mut |_, at_ns, event| {
-            if at_ns < start_ns {
+        let followed = session.follow(&mut sequencer, range_ns[1], &mut |_, at_ns, event| {
+            if at_ns < range_ns[0] {
                 if let Event::Other { topic, message } = event
                     && is_rare(topic)
                 {
@@ -119,9 +79,9 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
                 }
                 return Ok(());
             }
-            let failed = |error| UserError::writing(&options.output, &error);
             for (topic, message) in std::mem::take(&mut rare) {
-                take.as_it_was(&topic, &message, start_ns).map_err(failed)?;
+                let written = take.as_it_was(&topic, &message, range_ns[0]);
+                written.map_err(failed)?;
             }
             match &event {
                 Event::Accepted(record) => {
@@ -148,6 +108,61 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
     written.map_err(|error| UserError::writing(&options.output, &error))?;
     say!("{}: {}", options.output.display(), counts.in_words());
     Ok(0)
+}
+
+impl FromOptions {
+    /// The part of a session that the take has, ns.
+    fn range_ns(&self, session: &Source) -> Result<[u64; 2], UserError> {
+        let bounds = [self.start, self.end.unwrap_or(f64::MAX)];
+        if !(bounds[0] >= 0.0 && bounds[1] > bounds[0]) {
+            let what = format!("--start {} is not before --end", self.start);
+            return Err(UserError::usage(what).help("choose seconds after the beginning"));
+        }
+        let at = self.recording.display().to_string();
+        let length_s = session.length_ns() as f64 * 1e-9;
+        if length_s == 0.0 {
+            let what = "nothing was painted in it since its beginning";
+            return Err(UserError::usage(what).at(at));
+        }
+        if bounds[0] >= length_s {
+            let what = format!("--start {} is behind its end", bounds[0]);
+            let help = session.length_in_words();
+            return Err(UserError::usage(what).at(at).help(help));
+        }
+        Ok(bounds.map(|seconds| match seconds {
+            f64::MAX => u64::MAX,
+            seconds => (seconds * 1e9) as u64,
+        }))
+    }
+}
+
+/// What a take of a session begins with, and its painting, in a file, at that time, ns.
+fn begin_at(
+    session: &mut Source,
+    begin: &Path,
+    start_ns: u64,
+) -> Result<(TakeOrigin, Sequencer), UserError> {
+    session.write_painting(begin)?;
+    let (document, mut sequencer, since) = open_begin(begin)?;
+    let mut brushes = Vec::new();
+    if start_ns > 0 {
+        session.follow(&mut sequencer, start_ns, &mut |sequencer, _, event| {
+            if let Event::Accepted(record) = event {
+                if let Accepted::Entry(Entry::Brush { brush, .. }) = &record.what {
+                    brushes.push(brush.clone());
+                }
+                sequencer.replay(record);
+            }
+            Ok(())
+        })?;
+        document.write_checkpoint(Checkpoint::of(&mut sequencer, since));
+    }
+    document.close().map_err(|error| wrong(begin, &error))?;
+    let painting = std::fs::read(begin).map_err(|error| UserError::reading(begin, &error))?;
+    let mut origin = session.origin()?;
+    origin.files.insert(PAINTING.to_owned(), painting);
+    origin.brushes.extend(brushes);
+    Ok((origin, sequencer))
 }
 
 /// Where a take comes from.

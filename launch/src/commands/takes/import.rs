@@ -7,8 +7,9 @@ use maulstick_device::table::{TableLayout, TimeUnit, import};
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 
+use crate::commands::option_error::{OptionError, sides};
 use crate::commands::write_take;
-use crate::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick take import`.
 #[derive(Args, Clone, Debug)]
@@ -58,13 +59,12 @@ pub(super) fn run(options: &ImportOptions) -> Result<i32, UserError> {
 }
 
 /// Reads `WxH`, each above 0.
-fn parse_area(text: &str) -> Result<[f64; 2], String> {
-    let side = |side: &str| {
-        let side = side.trim().parse::<f64>().ok();
-        side.filter(|side| *side > 0.0 && side.is_finite())
-    };
-    let sides = text.split_once(['x', 'X', '×']);
-    sides
-        .and_then(|(width, height)| Some([side(width)?, side(height)?]))
-        .ok_or_else(|| format!("'{text}' is not a size such as 44704x27940"))
+fn parse_area(text: &str) -> Result<[f64; 2], OptionError> {
+    let expected = "a size such as 44704x27940";
+    let area = sides(text, expected)?;
+    if area.iter().all(|side| *side > 0.0 && side.is_finite()) {
+        Ok(area)
+    } else {
+        Err(OptionError::unexpected(text, expected))
+    }
 }

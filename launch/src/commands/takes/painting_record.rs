@@ -11,7 +11,7 @@ use maulstick_session::{WorkClock, each_record};
 
 use super::take_writer::TakeOrigin;
 use crate::commands::painting::no_record;
-use crate::document::{copy_closed, read, wrong};
+use maulstick_painting_setup::document::{copy_closed, read, wrong};
 
 /// A painting that has a record.
 #[derive(Debug)]

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
 use maulstick_appearance::picture::Export;
 use maulstick_brush::speed_limit::FASTEST_M_S;
 use maulstick_device::{Take, use_kit};
@@ -16,49 +15,17 @@ use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::{Autosave, Offline};
 use maulstick_types::Mixture;
 
+pub use super::render_options::RenderOptions;
 use super::render_session::render_session;
-use crate::backend::choose_backend;
-use crate::cells::picture_settings;
 use crate::commands::progress_bar;
-use crate::destination::export;
-use crate::document::{Presence, go_on, presence, wrong};
-use crate::easel::Easel;
-use crate::outputs::{UsedFile, check_apart, check_outputs, named_by};
-use crate::performance::{PaintingOptions, brush_file, library_from, painting_setup, refused};
-use crate::script::{Act, Script, advice};
-
-/// Options of `maulstick render`.
-#[derive(Args, Clone, Debug)]
-pub struct RenderOptions {
-    /// Take, or a recorded session
-    #[arg(required_unless_present = "script", conflicts_with = "script")]
-    take: Option<PathBuf>,
-    /// Script instead of a take: brushes, loads, takes, drying, light, step by step
-    #[arg(long, value_name = "FILE")]
-    script: Option<PathBuf>,
-    /// Picture to write, a PNG
-    #[arg(short, long, value_name = "PNG")]
-    pub(super) output: PathBuf,
-    /// Of a recorded session, paint up to this place of the painting's journal, as `maulstick snapshot` prints it [default:
-    /// its end]
-    #[arg(long, value_name = "PLACE", conflicts_with = "script")]
-    pub(super) until: Option<u64>,
-    /// Settings of the rig
-    #[arg(long, value_name = "FILE")]
-    rig: Option<PathBuf>,
-    /// Colour profile: srgb, display-p3, or the ICC file of a display or printer [default: that of
-    /// rig.toml]
-    #[arg(long, value_name = "PROFILE")]
-    profile: Option<String>,
-    /// Gamut mapping: soft, clamp [default: that of rig.toml]
-    #[arg(long, value_name = "MAPPING")]
-    gamut: Option<String>,
-    /// Painting to paint in and save; begun if it does not exist
-    #[arg(long, value_name = "FILE")]
-    pub(super) document: Option<PathBuf>,
-    #[command(flatten)]
-    pub(super) painting: PaintingOptions,
-}
+use maulstick_painting_setup::backend::choose_backend;
+use maulstick_painting_setup::cells::picture_settings;
+use maulstick_painting_setup::destination::export;
+use maulstick_painting_setup::document::{Presence, go_on, presence, wrong};
+use maulstick_painting_setup::outputs::{UsedFile, check_apart, check_outputs, named_by};
+use maulstick_painting_setup::{brush_file, library_from, painting_setup, refused};
+use maulstick_script::ScriptRunner;
+use maulstick_script::{Act, Script, advice};
 
 impl RenderOptions {
     /// The files that are read, but for those that the script names.
@@ -275,9 +242,9 @@ impl RenderOptions {
         export: &Export,
     ) -> Result<u64, UserError> {
         let bar = progress_bar(script.length_ns()).with_message("painting");
-        let mut easel = Easel::new(offline, &mut autosave, bar);
-        let painted = easel.follow_script(script);
-        let mut offline = easel.offline;
+        let mut runner = ScriptRunner::new(offline, &mut autosave, bar);
+        let painted = runner.follow_script(script);
+        let mut offline = runner.offline;
         let mut close = |offline: &mut Offline| match (autosave.take(), &self.document) {
             (Some(autosave), Some(path)) => autosave
                 .close(offline.sequencer_mut())

@@ -9,12 +9,12 @@ use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::{Autosave, RecordedSession};
 
 use super::from::Counts;
-use super::render::RenderOptions;
-use crate::backend::choose_backend;
+use super::render_options::RenderOptions;
 use crate::commands::{progress_bar, say};
-use crate::destination::export;
-use crate::document::{Presence, presence, wrong};
-use crate::performance::{KitOptions, refused};
+use maulstick_painting_setup::backend::choose_backend;
+use maulstick_painting_setup::destination::export;
+use maulstick_painting_setup::document::{Presence, presence, wrong};
+use maulstick_painting_setup::{KitOptions, refused};
 
 /// Paints a session.
 ///

@@ -21,12 +21,12 @@ use serde_json::json;
 use super::from::{self, FromOptions};
 use super::import::{self, ImportOptions};
 use super::render::{self, RenderOptions};
-use crate::cells::picture_settings;
 use crate::commands::{print_json, say, write_take};
-use crate::document::wrong;
-use crate::kit::kit_of;
-use crate::outputs::{UsedFile, check_outputs, named_by};
-use crate::performance::{KitOptions, library_from, painting_setup, refused};
+use maulstick_painting_setup::cells::picture_settings;
+use maulstick_painting_setup::document::wrong;
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs, named_by};
+use maulstick_painting_setup::take_setup::take_setup;
+use maulstick_painting_setup::{KitOptions, library_from, painting_setup, refused};
 
 /// Topics of the hands.
 const HANDS: &str = "stylus/*/sample";
@@ -104,7 +104,7 @@ fn embed(options: &EmbedOptions) -> Result<i32, UserError> {
         .check(&library)
         .map_err(refused)?;
     let take = Take {
-        setup: Some(kit_of(&config, &brush, &loads)?),
+        setup: Some(take_setup(&config, &brush, &loads)?),
         ..take
     };
     write_take(&take, &options.output)?;

@@ -16,10 +16,10 @@ use tokio::task::spawn_blocking;
 
 use super::sketch;
 use super::switch::{Asker, Plan, SwitchEvent};
-use crate::cells::check_memory;
-use crate::document::{measure, read, round, wrong};
-use crate::performance::{library_from, painting_setup, refused};
 use crate::up::first_load;
+use maulstick_painting_setup::cells::check_memory;
+use maulstick_painting_setup::document::{measure, read, round, wrong};
+use maulstick_painting_setup::{library_from, painting_setup, refused};
 
 /// A painting is in another file within this time.
 const SAVE_TIME: std::time::Duration = std::time::Duration::from_secs(3600);

@@ -1,28 +1,12 @@
 //! `maulstick colour chart`: every paint with every other.
 
-use std::path::PathBuf;
-
-use clap::Args;
-use maulstick::outputs::{UsedFile, check_outputs};
-use maulstick::performance::library_from;
-use maulstick::viewing::ViewingOptions;
+use maulstick_painting_setup::library_from;
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
+use maulstick_tool_options::figures::ChartOptions;
 
 use crate::chart::every_pair::chart;
-
-/// Options of `maulstick colour chart`.
-#[derive(Args, Clone, Debug)]
-pub(crate) struct ChartOptions {
-    /// Picture to write, a PNG
-    #[arg(short, long, value_name = "PNG")]
-    output: PathBuf,
-    #[command(flatten)]
-    viewing: ViewingOptions,
-    /// Paint file instead of the measured paints
-    #[arg(long, value_name = "FILE")]
-    paints: Option<PathBuf>,
-}
 
 pub(super) fn run(options: &ChartOptions) -> Result<i32, UserError> {
     let library = library_from(options.paints.as_deref())?;

@@ -1,41 +1,18 @@
 //! `maulstick colour compare`: one graded mixture, mixed in four ways.
 
-use std::path::PathBuf;
-
-use clap::Args;
 use maulstick::commands::colour::mix::blend;
 use maulstick::commands::{print_json, print_text, write_picture};
-use maulstick::outputs::{UsedFile, check_outputs};
-use maulstick::performance::library_from;
 use maulstick::swatch::{Terminal, hex};
-use maulstick::viewing::ViewingOptions;
 use maulstick_optics::Seen;
 use maulstick_optics::comparison::{Grading, compare};
+use maulstick_painting_setup::library_from;
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
+use maulstick_tool_options::figures::CompareOptions;
 use serde_json::{Value, json};
 
 use crate::chart::four_ways;
-
-/// Options of `maulstick colour compare`.
-#[derive(Args, Clone, Debug)]
-pub(crate) struct CompareOptions {
-    /// The two ends of the graded mixture, shares by volume, such as "2 Cobalt Blue, 1 Titanium White"; or one
-    /// mixture of two paints
-    #[arg(value_name = "MIX")]
-    mixtures: Vec<String>,
-    /// Picture to write, a PNG
-    #[arg(short, long, value_name = "PNG")]
-    output: Option<PathBuf>,
-    #[command(flatten)]
-    viewing: ViewingOptions,
-    /// Paint file instead of the measured paints
-    #[arg(long, value_name = "FILE")]
-    paints: Option<PathBuf>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
-}
 
 /// A graded mixture, mixed.
 struct Comparison {

@@ -1,27 +1,14 @@
 //! `maulstick demo effects`: what the paint model is for.
 
-use std::path::PathBuf;
-
-use clap::Args;
 use maulstick::commands::{progress_bar, write_picture};
-use maulstick::outputs::{UsedFile, check_outputs};
-use maulstick::paintings::BoardOptions;
-use maulstick::performance::library;
 use maulstick::say;
+use maulstick_painting_setup::library;
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
+use maulstick_tool_options::figures::EffectsOptions;
 
 use crate::sheet::effects::effects;
-
-/// Options of `maulstick demo effects`.
-#[derive(Args, Clone, Debug)]
-pub(crate) struct EffectsOptions {
-    /// Picture to write, a PNG
-    #[arg(short, long, value_name = "PNG")]
-    output: PathBuf,
-    #[command(flatten)]
-    board: BoardOptions,
-}
 
 pub(super) fn run(options: &EffectsOptions) -> Result<i32, UserError> {
     let path = &options.output;

@@ -1,25 +1,12 @@
 //! `maulstick brush sheet`: the brushes of the library and their marks.
 
-use std::path::PathBuf;
-
-use clap::Args;
-use maulstick::cells::SheetCells;
 use maulstick::commands::progress_bar;
-use maulstick::performance::library;
+use maulstick_painting_setup::library;
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, check_writable};
+use maulstick_tool_options::figures::SheetOptions;
 
 use crate::sheet::sheet;
-
-/// Options of `maulstick brush sheet`.
-#[derive(Args, Clone, Debug)]
-pub(crate) struct SheetOptions {
-    /// Picture to write, a PNG
-    #[arg(short, long, value_name = "PNG")]
-    output: PathBuf,
-    #[command(flatten)]
-    cells: SheetCells,
-}
 
 pub(super) fn run(options: &SheetOptions) -> Result<i32, UserError> {
     let path = &options.output;

@@ -30,8 +30,8 @@ use maulstick_types::values::BrushName;
 
 use self::gesture::Hand;
 use maulstick::page::Page;
-use maulstick::paintings::Board;
-use maulstick::performance::refused;
+use maulstick_painting_setup::refused;
+use maulstick_script::paintings::Board;
 
 /// Margin and gaps, mm.
 const GAP_MM: f64 = 3.0;

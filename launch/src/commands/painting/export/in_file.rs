@@ -11,10 +11,10 @@ use maulstick_types::scene::{CANVAS, PALETTE};
 
 use super::ExportOptions;
 use crate::commands::{progress, progress_bar, say};
-use crate::destination::export;
-use crate::document::{read, wrong};
-use crate::outputs::{UsedFile, check_outputs};
-use crate::performance::refused;
+use maulstick_painting_setup::destination::export;
+use maulstick_painting_setup::document::{read, wrong};
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::refused;
 
 /// Writes a painting for other programs, from its file.
 ///

@@ -10,7 +10,7 @@ use super::ExportOptions;
 use crate::commands::client::Client;
 use crate::commands::open::LONGEST;
 use crate::commands::say;
-use crate::outputs::{Relayed, UsedFile, check_outputs, named_by};
+use maulstick_painting_setup::outputs::{Relayed, UsedFile, check_outputs, named_by};
 
 /// Has the painting written as it is now.
 ///

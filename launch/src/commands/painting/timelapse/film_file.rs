@@ -10,7 +10,7 @@ use maulstick_exchange::film::GifFilm;
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, check_folder, ending, write_folder, write_whole, write_whole_at};
 
-use crate::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Program that encodes video.
 const FFMPEG: &str = "ffmpeg";

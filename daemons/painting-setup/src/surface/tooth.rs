@@ -1,0 +1,146 @@
+//! Canvas textures from image files.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use maulstick_canvas::relief::tooth_picture::{DEPTH_UM, ToothName, WIDTH_MM};
+use maulstick_exchange::{Image, PictureKind, embed};
+use maulstick_rig::UserError;
+
+use crate::surface::picture::{no_picture, open_picture};
+
+/// Depth of a tooth for which nothing is said, µm.
+pub const DEPTH: f64 = 80.0;
+
+/// A picture that becomes a tooth: white is high. It is repeated beyond its edges.
+#[derive(Clone, Debug)]
+pub struct ToothPicture {
+    image: Arc<Image>,
+    file: String,
+    width_mm: Option<f64>,
+    /// From white to black, µm.
+    pub depth_um: f64,
+}
+
+impl ToothPicture {
+    /// A picture that is to be so wide on the canvas, or as wide as that, and so deep.
+    ///
+    /// # Errors
+    /// A [`UserError`] for sizes out of range.
+    pub fn new(
+        image: Image,
+        file: &str,
+        width_mm: Option<f64>,
+        depth_um: f64,
+    ) -> Result<Self, UserError> {
+        for (what, size, range) in [
+            ("mm wide", width_mm, WIDTH_MM),
+            ("µm deep", Some(depth_um), DEPTH_UM),
+        ] {
+            if let Some(size) = size.filter(|size| !range.contains(size)) {
+                let (least, most) = (range.start(), range.end());
+                return Err(UserError::usage(format!("a tooth {size} {what}"))
+                    .help(format!("choose {least} to {most}")));
+            }
+        }
+        Ok(Self {
+            image: Arc::new(image),
+            file: file.to_owned(),
+            width_mm,
+            depth_um,
+        })
+    }
+
+    /// Reads the picture, too; its depth is [`DEPTH`] if absent.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the file is no picture, or for sizes out of range.
+    pub fn read(
+        file: &str,
+        width_mm: Option<f64>,
+        depth_um: Option<f64>,
+    ) -> Result<Self, UserError> {
+        let path = Path::new(file);
+        if path.exists() && !PictureKind::is_named(path) {
+            return Err(
+                UserError::usage("a tooth is made of a picture, and this is none")
+                    .at(file)
+                    .help("give a PNG, JPEG, TIFF, OpenEXR or OpenRaster picture: white is high"),
+            );
+        }
+        Self::new(
+            open_picture(path)?,
+            file,
+            width_mm,
+            depth_um.unwrap_or(DEPTH),
+        )
+    }
+
+    /// Its width on a canvas of so many cells of `cell_m`, mm.
+    fn width_on(&self, cells: [u32; 2], cell_m: f64) -> f64 {
+        self.width_mm.unwrap_or(f64::from(cells[0]) * cell_m * 1e3)
+    }
+
+    /// The PNG that a painting with such a canvas holds.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the picture is too large for it.
+    pub fn png(&self, cells: [u32; 2], cell_m: f64) -> Result<Arc<[u8]>, UserError> {
+        let width_mm = self.width_on(cells, cell_m);
+        embed::tooth(&self.image, width_mm, cell_m)
+            .map_err(|error| no_picture(self.file.as_ref(), &error))
+    }
+
+    /// The tooth's name where the painting holds it by this hash.
+    #[must_use]
+    pub fn name(&self, hash: String, cells: [u32; 2], cell_m: f64) -> String {
+        let name = ToothName {
+            hash,
+            width_mm: self.width_on(cells, cell_m),
+            depth_um: self.depth_um,
+        };
+        name.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A PNG of one pixel.
+    fn swatch() -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 1, 1);
+        encoder.set_color(png::ColorType::Grayscale);
+        let mut writer = encoder.write_header().expect("a header");
+        writer.write_image_data(&[7]).expect("a pixel");
+        writer.finish().expect("whole");
+        bytes
+    }
+
+    #[test]
+    fn what_is_no_tooth_is_told_with_what_to_do() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("linen.csv");
+        std::fs::write(&path, "400,0.4\n").expect("written");
+        let file = path.display().to_string();
+        let weave = folder.path().join("weave.png").display().to_string();
+        std::fs::write(&weave, swatch()).expect("written");
+        let none = ToothPicture::read("none.png", None, None).expect_err("no file");
+        assert!(none.place.as_deref() == Some("none.png") && none.help.is_some());
+        for (fault, word) in [
+            (ToothPicture::read(&file, None, None), "PNG"),
+            (ToothPicture::read(&weave, Some(0.5), None), "1 to 10000"),
+            (
+                ToothPicture::read(&weave, None, Some(f64::NAN)),
+                "1 to 1000",
+            ),
+        ] {
+            let fault = fault.expect_err(word);
+            assert!(
+                fault.help.as_deref().unwrap_or_default().contains(word),
+                "{fault}"
+            );
+        }
+    }
+}
