@@ -5,12 +5,11 @@ use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, RigConfig};
 use maulstick_types::command::slow_canvas::{SLOW_CELL_M, SLOW_CELLS, is_slow};
 use maulstick_types::limits::CELLS_IN_ALL;
+use maulstick_types::values::{CellSide, Quantity};
 
 /// Side of a cell in pictures, mm. A hand that paints has those of its rig, which are larger, so that a
 /// broad brush keeps up with it.
 pub const PICTURE_CELL_MM: f64 = 0.125;
-/// Cells whose side may be asked for, mm.
-const CELLS_MM: std::ops::RangeInclusive<f64> = 0.02..=2.0;
 /// Cells of a canvas either way.
 const SIDE: std::ops::RangeInclusive<f64> = 1.0..=65_536.0;
 
@@ -39,14 +38,15 @@ pub fn parse_cell_mm(text: &str) -> Result<f64, String> {
         .trim()
         .parse()
         .map_err(|_| format!("'{text}' is not a number of mm such as {PICTURE_CELL_MM}"))?;
-    match CELLS_MM.contains(&side) {
-        true => Ok(side),
-        false => Err(format!(
-            "cells of {text} mm; choose {} to {} mm, such as {PICTURE_CELL_MM}",
-            CELLS_MM.start(),
-            CELLS_MM.end()
-        )),
+    let usual = CellSide::USUAL;
+    if usual.contains(&side) {
+        return Ok(side);
     }
+    Err(format!(
+        "cells of {text} mm; choose {} to {} mm, such as {PICTURE_CELL_MM}",
+        usual.start(),
+        usual.end()
+    ))
 }
 
 /// The settings of a picture for which no rig is given.

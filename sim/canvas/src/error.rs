@@ -4,11 +4,10 @@
 use maulstick_types::brush::BRUSHES_MOST;
 use maulstick_types::command::Outcome;
 use maulstick_types::command::advice::Advice;
-use maulstick_types::limits::CELLS_M;
 use maulstick_types::nearest::choice;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::LightError;
-use maulstick_types::values::ValueError;
+use maulstick_types::values::{CellSide, Quantity, ValueError};
 use maulstick_types::{EditFault, MixtureError, Region};
 
 use crate::quantum::SLOTS;
@@ -347,10 +346,7 @@ impl EditError {
             Self::Heights => say("import it as a ground, which keeps its colours"),
             Self::Colours => say("import it as a tooth, which keeps it as 16-bit heights"),
             Self::Cells(_) => say("choose 1 to 65536 cells across and up"),
-            Self::CellSize(_) => {
-                let [least, most] = [CELLS_M.start(), CELLS_M.end()].map(|m| 1e3 * m);
-                Advice::say(format!("choose cells of {least} to {most} mm"))
-            }
+            Self::CellSize(_) => Advice::say(format!("choose cells of {}", CellSide::range_text())),
             Self::Damaged(_) => Advice::Recover,
         }
     }

@@ -9,8 +9,8 @@ use maulstick_canvas::relief::Relief;
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_canvas::relief::tooth_picture::PictureTooth;
 use maulstick_optics::PaintLibrary;
-use maulstick_types::limits::CELLS_M;
 use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
+use maulstick_types::values::CellSide;
 use maulstick_types::{Mixture, Pose};
 
 use crate::error::paint_error;
@@ -201,9 +201,10 @@ pub(crate) fn check_size(cells: [u32; 2], cell_m: f64) -> Result<(), EditError> 
     if cells.iter().any(|cells| !(1..=65_536).contains(cells)) {
         return Err(EditError::Cells(cells));
     }
-    match CELLS_M.contains(&cell_m) {
-        true => Ok(()),
-        false => Err(EditError::CellSize(cell_m * 1e3)),
+    if CellSide::stored_range().contains(&cell_m) {
+        Ok(())
+    } else {
+        Err(EditError::CellSize(cell_m * 1e3))
     }
 }
 

@@ -4,6 +4,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | `dialog`, `browser`, `paths` | parts of dialogs: frame, file chooser with the listing of a folder, paths |
+//! | `fault` | what is wrong with what is written in one |
 //! | `new`, `open`, `save_as`, `export`, `choose` | one dialog each |
 //! | `close` | asks before the window closes on a painting without a name |
 //! | `sketch_offer` | the sketches of before |
@@ -17,6 +18,7 @@ mod close;
 pub(crate) mod dialog;
 mod dropped;
 mod export;
+mod fault;
 mod new;
 mod open;
 mod painting_file;
@@ -263,32 +265,11 @@ impl Files {
                 let decision = close.show(context);
                 return self.decide(decision, work);
             }
-            Dialog::Picture(picture) => {
-                let (answer, path) = picture.show(context);
+            Dialog::Picture(choose) | Dialog::Tracing(choose) | Dialog::Recording(choose) => {
+                let (answer, path) = choose.show(context);
+                let forget = choose.forgets();
                 if let Some(path) = path {
-                    reference.pin(context, &path, work.preferences);
-                    self.dialog = None;
-                    return;
-                }
-                (answer, None)
-            }
-            Dialog::Tracing(picture) => {
-                let (answer, path) = picture.show(context);
-                if let Some(path) = path {
-                    work.trace(&path);
-                    self.dialog = None;
-                    return;
-                }
-                (answer, None)
-            }
-            Dialog::Recording(choose) => {
-                let (answer, recording) = choose.show(context);
-                if let Some(recording) = recording {
-                    let forget = choose.forgets();
-                    work.requests
-                        .session(SessionOrder::Play { recording, forget });
-                    self.dialog = None;
-                    return;
+                    return self.take(context, (path, forget), reference, work);
                 }
                 (answer, None)
             }
@@ -306,6 +287,24 @@ impl Files {
                 }
             }
             _ => {}
+        }
+    }
+
+    /// Takes the file that was chosen; `forget` where the painting on the easel may go.
+    fn take(
+        &mut self,
+        context: &Context,
+        (path, forget): (PathBuf, bool),
+        reference: &mut Reference,
+        work: &mut PanelContext<'_>,
+    ) {
+        match self.dialog.take() {
+            Some(Dialog::Picture(_)) => reference.pin(context, &path, work.preferences),
+            Some(Dialog::Tracing(_)) => work.trace(&path),
+            _ => work.requests.session(SessionOrder::Play {
+                recording: path,
+                forget,
+            }),
         }
     }
 
@@ -436,19 +435,19 @@ impl Files {
 
     /// Opens a painting without a dialog, unless there is something to ask.
     fn open_path(&mut self, context: &Context, path: &Path, work: &mut PanelContext<'_>) {
-        if let Err(words) = UnsavedState::of(work.rig).check() {
+        if let Err(fault) = UnsavedState::of(work.rig).check() {
             let mut open = self.choose(context, work);
             open.propose(path);
-            open.refused(words);
+            open.refused(fault.to_string());
             self.begin(Dialog::Open(open));
             return;
         }
         work.notifications
             .note(tr!("Opening {file} …", file = paths::name(path)));
         let forget = false;
-        match paths::named(path) {
+        match fault::named(path) {
             Ok(path) => drop(ask(RigCommand::Open { path, forget }.into(), work)),
-            Err(words) => work.notifications.fault(words, String::new()),
+            Err(fault) => work.notifications.fault(fault.to_string(), String::new()),
         }
     }
 }
