@@ -6,8 +6,8 @@ use eframe::egui::Context;
 use maulstick_exchange::PictureKind;
 
 use crate::dialogs::browser::{Browser, Purpose};
+use crate::dialogs::dialog::fault::DialogFault;
 use crate::dialogs::dialog::{self, Answer, Foot};
-use crate::dialogs::fault::DialogFault;
 use crate::dialogs::open::discard_prompt::UnsavedState;
 use crate::dialogs::paths;
 use crate::sessions::RECORDING;

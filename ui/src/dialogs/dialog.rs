@@ -1,11 +1,14 @@
-//! The frame of a dialog: title, questions, errors, two buttons. Enter confirms, Escape cancels.
+//! The frame of a dialog: title, questions, errors, two buttons. Enter confirms, Escape cancels. `fault` says what is
+//! wrong with what is written in one.
 
 use eframe::egui::text_edit::TextEditState;
 use eframe::egui::{
     Align, Color32, Context, Frame, Id, Key, Layout, Margin, Modal, RichText, Ui, Visuals,
 };
 
-use crate::dialogs::fault::DialogFault;
+use fault::DialogFault;
+
+pub(crate) mod fault;
 
 /// Width of a dialog, points.
 pub(crate) const WIDTH: f32 = 420.0;

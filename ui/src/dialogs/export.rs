@@ -9,8 +9,8 @@ use maulstick_types::command::{Command, ExportOrder, FileCommand};
 use maulstick_ui_kit::language::{known, translated};
 
 use crate::dialogs::browser::{Browser, Purpose};
+use crate::dialogs::dialog::fault::{DialogFault, named, number, writable};
 use crate::dialogs::dialog::{self, Answer, Foot, line};
-use crate::dialogs::fault::{DialogFault, named, number, writable};
 use crate::dialogs::paths;
 
 /// A file format: its name in the command, its file ending, its description.

@@ -4,7 +4,6 @@
 //! | module | holds |
 //! | --- | --- |
 //! | `dialog`, `browser`, `paths` | parts of dialogs: frame, file chooser with the listing of a folder, paths |
-//! | `fault` | what is wrong with what is written in one |
 //! | `new`, `open`, `save_as`, `export`, `choose` | one dialog each |
 //! | `close` | asks before the window closes on a painting without a name |
 //! | `sketch_offer` | the sketches of before |
@@ -18,7 +17,6 @@ mod close;
 pub(crate) mod dialog;
 mod dropped;
 mod export;
-mod fault;
 mod new;
 mod open;
 mod painting_file;
@@ -44,6 +42,7 @@ use crate::sessions::SessionOrder;
 use crate::widgets::context::PanelContext;
 use choose::ChooseFile;
 use close::{ClosePainting, Decision};
+use dialog::fault::named;
 pub(crate) use dialog::wrong;
 use dialog::{Answer, in_words};
 use dropped::Dropped;
@@ -445,7 +444,7 @@ impl Files {
         work.notifications
             .note(tr!("Opening {file} …", file = paths::name(path)));
         let forget = false;
-        match fault::named(path) {
+        match named(path) {
             Ok(path) => drop(ask(RigCommand::Open { path, forget }.into(), work)),
             Err(fault) => work.notifications.fault(fault.to_string(), String::new()),
         }

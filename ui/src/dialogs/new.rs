@@ -10,8 +10,8 @@ use maulstick_types::values::{MaterialName, WholePath};
 use maulstick_ui_kit::language::{capitalized, known, translated};
 use maulstick_ui_kit::units::Units;
 
+use crate::dialogs::dialog::fault::{DialogFault, named, number, writable};
 use crate::dialogs::dialog::{self, Answer, Foot, line};
-use crate::dialogs::fault::{DialogFault, named, number, writable};
 use crate::dialogs::open::discard_prompt::UnsavedState;
 use crate::dialogs::paths;
 

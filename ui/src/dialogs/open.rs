@@ -9,8 +9,8 @@ use eframe::egui::Context;
 use maulstick_types::command::{Command, RigCommand};
 
 use crate::dialogs::browser::{Browser, Purpose};
+use crate::dialogs::dialog::fault::{DialogFault, named};
 use crate::dialogs::dialog::{self, Answer, Foot};
-use crate::dialogs::fault::{DialogFault, named};
 use crate::dialogs::open::discard_prompt::UnsavedState;
 use crate::dialogs::open::recent::RecentList;
 use crate::dialogs::paths;

@@ -6,8 +6,8 @@ use eframe::egui::Context;
 use maulstick_types::command::{self, Command, RigCommand};
 
 use crate::dialogs::browser::{Browser, Purpose};
+use crate::dialogs::dialog::fault::{DialogFault, named, writable};
 use crate::dialogs::dialog::{self, Answer, Foot};
-use crate::dialogs::fault::{DialogFault, named, writable};
 use crate::dialogs::open::PAINTINGS;
 use crate::dialogs::paths;
 

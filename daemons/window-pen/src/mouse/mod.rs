@@ -7,7 +7,8 @@
 //! | `pixel_path` | its path without the steps of whole pixels |
 //!
 //! A tablet reaches the rig twice, by its daemon and as the pointer: the mouse counts only while no
-//! other stylus has been in range for a second.
+//! other stylus has been in range for a second. It has neither twist nor pressure: its brush is set down across the stroke
+//! once 2.5 mm or 80 ms have shown its direction, then follows as if drawn by a string.
 
 use maulstick_brush::model::BRIDGED_NS;
 use maulstick_bus::credit::Stamp;

@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use crate::dialogs::fault::DialogFault;
+use crate::dialogs::dialog::fault::DialogFault;
 use crate::rig::state::RigState;
 
 /// State of the painting that would be closed.

@@ -159,10 +159,7 @@ impl BrushRenderer {
                 if !chain.is_visible() || !reaches {
                     continue;
                 }
-                if kept.slots.len() == slots {
-                    kept.slots.push(self.passes.slot(gpu));
-                }
-                let slot = &mut kept.slots[slots];
+                let slot = kept.slot(slots, || self.passes.slot(gpu));
                 slots += 1;
                 let drawn = self
                     .passes
@@ -195,6 +192,14 @@ impl BrushPose<'_> {
 }
 
 impl Kept {
+    /// The slot of a number, at most one more than there are.
+    fn slot(&mut self, number: usize, new: impl FnOnce() -> ShadowSlot) -> &mut ShadowSlot {
+        if self.slots.len() == number {
+            self.slots.push(new());
+        }
+        &mut self.slots[number]
+    }
+
     /// The paint on the brush as the display takes it.
     fn tinted(
         &mut self,

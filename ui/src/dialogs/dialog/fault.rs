@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use maulstick_types::values::{ValueError, WholePath};
 
-use crate::dialogs::dialog::in_words;
+use super::in_words;
 use crate::dialogs::paths;
 
 /// A reason; shown in the language of the window, with advice.
@@ -58,75 +58,73 @@ pub(crate) enum DialogFault {
 
 impl fmt::Display for DialogFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let file = |path: &PathBuf| paths::shown(path);
         let words = match self {
-            Self::NoNumber { what, text } => {
-                tr!(
-                    "{what}: “{text}” is no number. Write one such as 20 or 0.5.",
-                    what,
-                    text
-                )
-            }
-            Self::NoCells => {
-                tr!("Cells per mm: write a number above 0; 4 is usual.").to_owned()
-            }
+            Self::NoNumber { what, text } => tr!(
+                "{what}: “{text}” is no number. Write one such as 20 or 0.5.",
+                what,
+                text
+            ),
             Self::Value(error) => in_words(&error.to_string(), ""),
-            Self::NoGround => tr!(
-                "Ground: write the path of a picture, or of a measured ground, a line for each wavelength in nm and its reflectance."
-            )
-            .to_owned(),
-            Self::Slow => tr!(
-                "Painting on so many cells is slow. Choose larger ones, 4 per mm are usual, or tick that it may be slow."
-            )
-            .to_owned(),
-            Self::NoPaintingName => {
-                tr!("Keep in: write the name of a file, or begin a sketch.").to_owned()
-            }
-            Self::NoName => tr!("Write the name of a file.").to_owned(),
-            Self::NotUtf8 => {
-                tr!("This path is not UTF-8: give the file another name.").to_owned()
-            }
             Self::Path(error) => tr!("This path cannot be used: {error}.", error),
-            Self::NoFolder(path) => tr!(
-                "There is no folder {folder}. Write one that is there.",
-                folder = file(path)
-            ),
-            Self::Taken(path) => tr!(
-                "There is a file {file} already. Write another name, or open that one.",
-                file = file(path)
-            ),
-            Self::Replaces(path) => tr!(
-                "There is a file {file} already. Write another name, or tick that it may go.",
-                file = file(path)
-            ),
             Self::NoFormat(ending) => tr!(
                 "A name that ends in .{ending} says nothing that can be written. End it in .png, \
                  .ora, .exr, .stl or .glb.",
                 ending
             ),
-            Self::Flat => {
-                tr!("Base and heights: write numbers above 0; 2 mm and 1 are usual.").to_owned()
-            }
-            Self::Folder => tr!("This is a folder. Choose a painting in it.").to_owned(),
-            Self::NoPainting(path) => tr!(
+            Self::NoFolder(folder) => tr!(
+                "There is no folder {folder}. Write one that is there.",
+                folder = paths::shown(folder)
+            ),
+            Self::Taken(file) => tr!(
+                "There is a file {file} already. Write another name, or open that one.",
+                file = paths::shown(file)
+            ),
+            Self::Replaces(file) => tr!(
+                "There is a file {file} already. Write another name, or tick that it may go.",
+                file = paths::shown(file)
+            ),
+            Self::NoPainting(file) => tr!(
                 "There is no file {file}. Choose one of the list, or begin a new one.",
-                file = file(path)
+                file = paths::shown(file)
             ),
-            Self::NoPicture(path) => tr!(
+            Self::NoPicture(file) => tr!(
                 "{file} is no file. Choose a PNG, JPEG, TIFF, OpenEXR or OpenRaster of the list.",
-                file = file(path)
+                file = paths::shown(file)
             ),
-            Self::NoRecording(path) => tr!(
+            Self::NoRecording(file) => tr!(
                 "{file} is no file. Choose a recording of the list.",
-                file = file(path)
+                file = paths::shown(file)
             ),
+            plain => return f.write_str(plain.plain_words()),
+        };
+        f.write_str(&words)
+    }
+}
+
+impl DialogFault {
+    /// The sentence of one that says nothing of its own; empty for another.
+    fn plain_words(&self) -> &'static str {
+        match self {
+            Self::NoCells => tr!("Cells per mm: write a number above 0; 4 is usual."),
+            Self::NoGround => tr!(
+                "Ground: write the path of a picture, or of a measured ground, a line for each wavelength in nm and its reflectance."
+            ),
+            Self::Slow => tr!(
+                "Painting on so many cells is slow. Choose larger ones, 4 per mm are usual, or tick that it may be slow."
+            ),
+            Self::NoPaintingName => {
+                tr!("Keep in: write the name of a file, or begin a sketch.")
+            }
+            Self::NoName => tr!("Write the name of a file."),
+            Self::NotUtf8 => tr!("This path is not UTF-8: give the file another name."),
+            Self::Flat => tr!("Base and heights: write numbers above 0; 2 mm and 1 are usual."),
+            Self::Folder => tr!("This is a folder. Choose a painting in it."),
             Self::Unsaved => tr!(
                 "The painting on the easel is in no file and would be gone. Keep it first \
                  (Escape, then Ctrl+S), or tick that you let it go."
-            )
-            .to_owned(),
-        };
-        f.write_str(&words)
+            ),
+            _ => "",
+        }
     }
 }
 
