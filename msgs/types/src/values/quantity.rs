@@ -62,7 +62,7 @@ pub trait Quantity {
 
 /// A number out of its range, in a painter's unit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{name} {value}{unit} is out of range: choose {}", range_text(.range, .unit))]
+#[error("{name} of {value}{unit} is out of range: choose {}", range_text(.range, .unit))]
 pub struct OutOfRange {
     /// The quantity.
     pub name: &'static str,
