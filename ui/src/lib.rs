@@ -36,8 +36,7 @@
 //! - Under a held brush the view and surfaces stay; only the free hand moves the canvas. Surfaces move by `Place`
 //!   alone; where one may lie is one type for mouse, touch and 6-DOF mouse.
 //! - A press counts where it falls, and held keys if they were held before it. A resting pointer is sent once and keeps
-//!   its brush. The mouse has neither twist nor pressure: its brush is set down across the stroke once 1.5 mm or 80 ms
-//!   have shown its direction, then follows as if drawn by a string. A pen is read on its own thread.
+//!   its brush. Mouse and pens of the window are devices of `maulstick-window-pen`; a pen is read on its own thread.
 //!
 //! # Drawing
 //!

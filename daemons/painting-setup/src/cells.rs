@@ -6,12 +6,11 @@ use maulstick_rig::config::{CanvasSection, RigConfig};
 use maulstick_types::command::slow_canvas::{SLOW_CELL_M, SLOW_CELLS, is_slow};
 use maulstick_types::limits::CELLS_IN_ALL;
 use thiserror::Error;
+use maulstick_types::values::{CellSide, Quantity};
 
 /// Side of a cell in pictures, mm. A hand that paints has those of its rig, which are larger, so that a
 /// broad brush keeps up with it.
 pub const PICTURE_CELL_MM: f64 = 0.125;
-/// Cells whose side may be asked for, mm.
-const CELLS_MM: std::ops::RangeInclusive<f64> = 0.02..=2.0;
 /// Cells of a canvas either way.
 const SIDE: std::ops::RangeInclusive<f64> = 1.0..=65_536.0;
 
@@ -40,8 +39,8 @@ pub enum CellError {
     /// Too small, too large, or not finite.
     #[error(
         "cells of {0} mm; choose {least} to {most} mm, such as {PICTURE_CELL_MM}",
-        least = CELLS_MM.start(),
-        most = CELLS_MM.end()
+        least = CellSide::USUAL.start(),
+        most = CellSide::USUAL.end()
     )]
     OutOfRange(String),
 }
@@ -53,7 +52,7 @@ pub enum CellError {
 pub fn parse_cell_mm(text: &str) -> Result<f64, CellError> {
     let side = text.trim().parse();
     let side: f64 = side.map_err(|_| CellError::Malformed(text.to_owned()))?;
-    if CELLS_MM.contains(&side) {
+    if CellSide::USUAL.contains(&side) {
         Ok(side)
     } else {
         Err(CellError::OutOfRange(text.to_owned()))

@@ -67,7 +67,7 @@ pub fn painting_setup(
         .iter()
         .map(|text| {
             text.parse::<Mixture>()
-                .map_err(|error| refused(paint_error(error.into())).at("[palette] wells"))
+                .map_err(|error| refused(PaintError::from(error)).at("[palette] wells"))
         })
         .collect::<Result<_, _>>()?;
     let mut setup = PaintingSetup {

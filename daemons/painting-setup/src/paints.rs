@@ -31,7 +31,7 @@ pub fn library_from(path: Option<&Path>) -> Result<PaintLibrary, UserError> {
         PaintError::File { line, what } => UserError::usage(what)
             .at(format!("{}:{line}", path.display()))
             .help("a row: paint, colour index, source, K or S, then 101 values, 380 to 780 nm"),
-        other => refused(paint_error(other)),
+        other => refused(other),
     })
 }
 
@@ -43,5 +43,5 @@ pub fn mixture_of(text: &str, library: &PaintLibrary) -> Result<Mixture, UserErr
     let mixture = text.parse().map_err(PaintError::Mixture);
     mixture
         .and_then(|mixture: Mixture| library.check(&mixture))
-        .map_err(|error| refused(paint_error(error)))
+        .map_err(refused)
 }

@@ -8,7 +8,8 @@ use maulstick_optics::{Illuminant, Observer, PaintLibrary, RuleKind, StudioSetti
 use maulstick_rig::UserError;
 use maulstick_rig::config::is_path;
 use maulstick_rig::table_file::{MOST_BYTES, read_table};
-use maulstick_types::scene::SAMPLES;
+use maulstick_types::scene::Wavelengths;
+use maulstick_types::values::Quantity;
 
 use crate::refusal::refused;
 
@@ -33,7 +34,8 @@ pub struct ViewingOptions {
 }
 
 fn samples() -> clap::builder::RangedI64ValueParser<u8> {
-    clap::value_parser!(u8).range(i64::from(*SAMPLES.start())..=i64::from(*SAMPLES.end()))
+    let range = Wavelengths::RANGE;
+    clap::value_parser!(u8).range(*range.start() as i64..=*range.end() as i64)
 }
 
 /// A standard observer by its year.

@@ -203,7 +203,7 @@ fn what_is_out_of_range_says_what_to_choose() {
         ),
         (
             "{ mode = \"marker\", flow = -1 }",
-            &["-1 µm/mm", "choose .001"],
+            &["-1 µm/mm", "choose 0.001"],
         ),
         ("{ stain_um = -2 }", &["-2 µm", "choose 0 to 1000"]),
         ("{ light = { intensity = -1 } }", &["-1", "choose 0 to 100"]),

@@ -14,6 +14,7 @@
 //! | [`wayland`] | tablet-v2 of Wayland |
 //! | [`xinput`] | XInput 2 of X11 |
 //! | [`thread`](mod@thread) | the thread that reads |
+//! | [`mouse`] | the mouse of the window, where no other stylus is in range |
 //!
 //! A pen over a window whose pixels are a quarter of a millimetre wide: what it touches there is painted.
 //!
@@ -72,6 +73,7 @@
 //! X server does; that pointer does nothing on the desk while the pen is near and for 200 ms after.
 
 pub mod clock;
+pub mod mouse;
 pub mod reading;
 pub mod source;
 pub mod stylus;

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::os::unix::process::CommandExt as _;
 use std::path::Path;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
 
 use maulstick_rig::UserError;
 use maulstick_rig::program::own_program;
@@ -16,6 +17,11 @@ use nix::unistd::Pid;
 use tokio::signal::unix::{Signal as SignalStream, SignalKind, signal};
 
 use crate::up::plan::NodeSpec;
+
+/// Longest wait for the ends of killed processes.
+const LONGEST_END: Duration = Duration::from_secs(2);
+/// Interval at which they are looked for.
+const LOOK: Duration = Duration::from_millis(5);
 
 /// End of a process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,10 +142,21 @@ impl Process {
 }
 
 impl Drop for Processes {
+    /// Kills all, and waits for their ends: not longer than [`LONGEST_END`], for one that hangs in the system has none.
     fn drop(&mut self) {
-        for process in self.running.values_mut() {
-            process.signal(Signal::SIGKILL);
-            process.child.wait().ok();
+        self.running
+            .values()
+            .for_each(|process| process.signal(Signal::SIGKILL));
+        let give_up = Instant::now() + LONGEST_END;
+        let is_running = |process: &mut Process| matches!(process.child.try_wait(), Ok(None));
+        for (name, process) in &mut self.running {
+            while is_running(process) {
+                if Instant::now() >= give_up {
+                    tracing::warn!("the killed process of node '{name}' does not end");
+                    break;
+                }
+                std::thread::park_timeout(LOOK);
+            }
         }
     }
 }

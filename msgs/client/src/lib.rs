@@ -7,6 +7,7 @@
 //! | [`force_history`], [`sample_history`] | the last seconds of each device |
 //! | [`request`], [`dispatcher`] | requests, and a queue and a thread for each process |
 //! | [`stroke_barrier`], [`pending_orders`] | place of a request among the strokes |
+//! | [`frames`] | pictures of the surfaces, pulled tile by tile |
 //! | [`thumbnails`] | small pictures of versions and steps |
 //!
 //! A front end drains the [listener](listener::RigListener) into a [`LiveRig`](state::LiveRig), draws that, and hands
@@ -39,6 +40,7 @@
 pub mod connection;
 pub mod dispatcher;
 pub mod force_history;
+pub mod frames;
 pub mod listener;
 pub mod pending_orders;
 pub mod request;

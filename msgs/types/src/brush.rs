@@ -2,6 +2,7 @@
 
 use crate::Flags;
 use crate::pose::Pose;
+use crate::values::{Quantity, Zoom};
 use crate::wire::define::{message, wire_struct};
 
 /// Bits of [`Solve::flags`].
@@ -68,9 +69,6 @@ message! {
         pub solves: Vec<Solve>,
     }
 }
-
-/// Zooms that a surface may have.
-pub const ZOOMS: std::ops::RangeInclusive<f64> = 0.01..=100.0;
 
 /// Limit on the distance of a pose from its surface's origin along each axis, m.
 pub const FARTHEST_M: f64 = 100.0;
@@ -171,8 +169,8 @@ impl Solve {
         let near = |metres: &f64| metres.abs() <= FARTHEST_M;
         if !self.pose.is_valid() {
             Some("a pose is not finite or its quaternion is not a unit one")
-        } else if !ZOOMS.contains(&self.zoom) {
-            Some("a zoom is not of .01 to 100")
+        } else if Zoom::check(self.zoom).is_err() {
+            Some("a zoom is out of range")
         } else if !self.pose.position_m.iter().all(near) {
             Some("a pose is more than 100 m away from its surface")
         } else if !self

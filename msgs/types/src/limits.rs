@@ -15,8 +15,6 @@ pub const PAINT_NAME_MAX: usize = 128;
 pub const LAYER_NAME_MAX: usize = 128;
 /// Most bytes of a version's name.
 pub const VERSION_NAME_MAX: usize = 128;
-/// Thickness of a film that can be laid, m.
-pub const FILM_M: RangeInclusive<f64> = 1e-6..=5e-3;
 /// Most bytes of a brush file.
 pub const BRUSH_FILE_MAX: usize = 1_000_000;
 /// Most bytes of a device's name.
@@ -25,19 +23,9 @@ pub const DEVICE_NAME_MAX: usize = 128;
 pub const DEVICE_MAX: usize = 1 << 16;
 /// Most bytes of a spectrum.
 pub const SPECTRUM_MAX: usize = 1 << 18;
-/// Length of a drying, in sixtieths of a second: up to a year.
-pub const DRYING_TICKS: RangeInclusive<u32> = 1..=60 * 60 * 60 * 24 * 365;
-/// Side of a cell, m.
-pub const CELLS_M: RangeInclusive<f64> = 1e-5..=1e-2;
 /// Cells of a canvas along each side: half of one is rounded up.
 pub const CELLS: RangeInclusive<f64> = 0.5..=65_536.0;
 /// Most cells of a new canvas: twice what a large machine shows in comfort.
 pub const CELLS_IN_ALL: f64 = 1_073_741_824.0;
 /// Most wells of a surface.
 pub const WELLS_MAX: usize = 64;
-/// Factor on the stiffness of a brush.
-pub const STIFFNESS: RangeInclusive<f64> = 0.05..=20.0;
-/// Flow of a marker, m of thickness for each m of way.
-pub const FLOWS: RangeInclusive<f64> = 1e-6..=0.1;
-/// Thickness of paint that stays however hard it is brushed, m.
-pub const STAINS_M: RangeInclusive<f64> = 0.0..=1e-3;

@@ -9,8 +9,8 @@ use maulstick_canvas::relief::Relief;
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_canvas::relief::tooth_picture::PictureTooth;
 use maulstick_optics::PaintLibrary;
-use maulstick_types::limits::CELLS_M;
 use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
+use maulstick_types::values::{CellSide, Quantity as _};
 use maulstick_types::{Mixture, Pose};
 
 use maulstick_models::{MODELS, model_called};
@@ -200,7 +200,7 @@ pub(crate) fn check_size(cells: [u32; 2], cell_m: f64) -> Result<(), SurfaceErro
     if cells.iter().any(|cells| !(1..=65_536).contains(cells)) {
         return Err(SurfaceError::Cells(cells));
     }
-    if CELLS_M.contains(&cell_m) {
+    if CellSide::stored_range().contains(&cell_m) {
         Ok(())
     } else {
         Err(SurfaceError::CellSize(cell_m * 1e3))

@@ -9,6 +9,9 @@ use maulstick_brush::desk::Desk;
 use maulstick_brush::palette_place::Side;
 use maulstick_brush::{BrushFile, BrushModel, Head};
 use maulstick_canvas::planes::TILE_CELLS;
+use maulstick_client::frames::tile_planner::AtlasState;
+use maulstick_client::frames::tiles::TileRect;
+use maulstick_client::frames::{Shown, ShownTile, texels};
 use maulstick_num::geometry::Rigid;
 use maulstick_painting::PaintingSetup;
 use maulstick_rig::UserError;
@@ -19,14 +22,11 @@ use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
 use maulstick_ui::app::rack;
 use maulstick_ui::render::backdrop::Backdrop;
 use maulstick_ui::render::brush::renderer::{Below, BrushRenderer};
-use maulstick_ui::render::frames::{Shown, ShownTile, texels};
 use maulstick_ui::render::offscreen::Offscreen;
 use maulstick_ui::render::show_surface::Place;
 use maulstick_ui::render::surface::{Passes, SurfaceView};
-use maulstick_ui::render::tile_planner::AtlasState;
 use maulstick_ui::rig::brushes::BrushPose;
 use maulstick_ui::view::camera::{View, level};
-use maulstick_ui::view::visible_tiles::TileRect;
 
 use crate::report::{Report, quantile, sorted};
 

@@ -1,7 +1,8 @@
 //! Work on a thread, which the window polls and never waits for.
 
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
 use std::task::Poll;
+use std::time::Instant;
 
 use eframe::egui::Context;
 
@@ -40,6 +41,16 @@ impl<T: Send + 'static> BackgroundTask<T> {
             Err(TryRecvError::Empty) => Poll::Pending,
             Err(TryRecvError::Disconnected) => Poll::Ready(None),
         }
+    }
+
+    /// Waits for its end, not beyond `until`; true if it has ended. For a window that ends.
+    #[must_use]
+    pub fn wait(self, until: Instant) -> bool {
+        let left = until.saturating_duration_since(Instant::now());
+        !matches!(
+            self.found.recv_timeout(left),
+            Err(RecvTimeoutError::Timeout)
+        )
     }
 }
 

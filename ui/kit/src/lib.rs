@@ -2,7 +2,7 @@
 //!
 //! | module | content |
 //! | --- | --- |
-//! | [`rows`], [`labelled`] | rows of a panel: a word and a control |
+//! | [`rows`] | rows of a panel: a word and a control |
 //! | [`pending`] | a value that the rig has not confirmed yet |
 //! | [`arrow_keys`] | arrow keys on a field that has the keyboard |
 //! | [`notifications`] | messages to the painter |
@@ -16,16 +16,10 @@
 //!
 //! ```
 //! use eframe::egui::{Context, RawInput};
+//! use maulstick_types::values::FilmThickness;
 //! use maulstick_ui_kit::rows::{Number, Sliders};
 //!
-//! let number = Number {
-//!     word: "Width",
-//!     hover: "Width of the brush, mm",
-//!     range: 1.0..=80.0,
-//!     unit: " mm",
-//!     decimals: 1,
-//!     factors: true,
-//! };
+//! let number = Number::of::<FilmThickness>("Thickness", 1);
 //! let (context, mut sliders) = (Context::default(), Sliders::default());
 //! let _ = context.run_ui(RawInput::default(), |ui| {
 //!     let change = sliders.row(ui, &number, 12.0);
@@ -39,7 +33,6 @@ pub mod language;
 pub mod arrow_keys;
 pub mod background_task;
 pub mod display_transform;
-pub mod labelled;
 pub mod notifications;
 pub mod pending;
 pub mod rows;

@@ -8,11 +8,16 @@ use eframe::egui::{
     UiBuilder, vec2,
 };
 
+use maulstick_types::values::Quantity;
+
 use crate::language::{known, translated};
 use crate::pending::Pending;
+use crate::units::Units;
 
 /// Width of the words at the left, points.
 const WORDS: f32 = 84.0;
+/// A slider whose ends are this far apart goes by factors.
+const ORDERS: f64 = 20.0;
 
 /// A place of this width for what `add` adds from its left, cut off at its right.
 pub fn cell<T>(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui) -> T) -> T {
@@ -80,21 +85,88 @@ pub fn choice<'a>(
     other
 }
 
-/// A number of a slider.
+/// A number of a slider. Range, unit and hint are those of its type, and cannot be given otherwise:
+///
+/// ```compile_fail
+/// let number = maulstick_ui_kit::rows::Number { word: "Width", range: 0.0..=50.0 };
+/// ```
 #[derive(Clone, Debug)]
 pub struct Number<'a> {
-    /// The word at its left.
-    pub word: &'a str,
-    /// Description in a painter's words, with its unit.
-    pub hover: &'a str,
-    /// Its range, in the displayed unit.
-    pub range: RangeInclusive<f64>,
-    /// The unit.
-    pub unit: &'a str,
-    /// Digits after the point at most.
-    pub decimals: usize,
-    /// True for a logarithmic slider.
-    pub factors: bool,
+    word: &'a str,
+    help: &'a str,
+    /// Hint in the language of the window, where it is more than the help.
+    hint: Option<&'a str>,
+    range: RangeInclusive<f64>,
+    unit: &'a str,
+    /// Displayed units in one of the type's.
+    scale: f64,
+    decimals: usize,
+    has_digits: bool,
+}
+
+impl<'a> Number<'a> {
+    /// A number of a type, as the word at its left calls it, with this many digits after the point at most.
+    #[must_use]
+    pub const fn of<Q: Quantity>(word: &'a str, decimals: usize) -> Self {
+        Self {
+            word,
+            help: Q::HELP,
+            hint: None,
+            range: Q::USUAL,
+            unit: Q::UNIT,
+            scale: 1.0,
+            decimals,
+            has_digits: true,
+        }
+    }
+
+    /// A share, shown in per cent.
+    #[must_use]
+    pub const fn percent<Q: Quantity>(word: &'a str) -> Self {
+        Self {
+            unit: " %",
+            scale: 100.0,
+            ..Self::of::<Q>(word, 0)
+        }
+    }
+
+    /// A length in mm, shown in the painter's unit.
+    #[must_use]
+    pub fn length<Q: Quantity>(word: &'a str, units: Units) -> Self {
+        let (unit_mm, decimals, unit) = units.small();
+        Self {
+            unit,
+            scale: 1.0 / unit_mm,
+            ..Self::of::<Q>(word, decimals)
+        }
+    }
+
+    /// The part of the range that can be had here.
+    #[must_use]
+    pub fn within(mut self, range: &RangeInclusive<f64>) -> Self {
+        let [least, most] = [range.start(), range.end()];
+        self.range = least.max(*self.range.start())..=most.min(*self.range.end());
+        self
+    }
+
+    /// With a hint that says more than the help, in the language of the window.
+    #[must_use]
+    pub fn hint(mut self, hint: &'a str) -> Self {
+        self.hint = Some(hint);
+        self
+    }
+
+    /// Without its digits beside the slider.
+    #[must_use]
+    pub fn without_digits(mut self) -> Self {
+        self.has_digits = false;
+        self
+    }
+
+    /// True for a range over orders of magnitude.
+    fn is_by_factors(&self) -> bool {
+        *self.range.start() > 0.0 && self.range.end() / self.range.start() >= ORDERS
+    }
 }
 
 /// A change of a number; `None` if there was none.
@@ -104,8 +176,10 @@ pub struct Change {
     pub moved: Option<f64>,
     /// The painter is done with it, and it is not what it was in the rig.
     pub settled: Option<f64>,
-    /// The displayed value.
+    /// The displayed value, in the displayed unit.
     pub shown: f64,
+    /// True while the slider is dragged.
+    pub is_dragged: bool,
 }
 
 /// The sliders of a panel, by name, with what is in the hand.
@@ -115,15 +189,35 @@ pub struct Sliders {
 }
 
 impl Sliders {
-    /// A row with a slider whose number is `actual` in the rig.
+    /// A row with a slider whose number is `actual` in the rig, in the type's unit.
     pub fn row(&mut self, ui: &mut Ui, number: &Number<'_>, actual: f64) -> Change {
+        self.keyed(ui, number, number.word, actual)
+    }
+
+    /// As [`row`](Self::row), of several of the same word the one of this `key`.
+    pub fn keyed(&mut self, ui: &mut Ui, number: &Number<'_>, key: &str, actual: f64) -> Change {
         let mut change = Change::default();
         row(ui, translated(number.word), |ui| {
-            let (response, changed) = self.bare(ui, number, number.word, actual);
+            let (response, changed) = self.bare(ui, number, key, actual);
             change = changed;
             response
         });
         change
+    }
+
+    /// Rows of numbers that take effect while they are dragged; true if one was moved.
+    pub fn rows<'n>(
+        &mut self,
+        ui: &mut Ui,
+        numbers: impl IntoIterator<Item = (&'n Number<'n>, &'n mut f64)>,
+    ) -> bool {
+        let mut is_moved = false;
+        for (number, value) in numbers {
+            if let Some(moved) = self.row(ui, number, *value).moved {
+                (*value, is_moved) = (moved, true);
+            }
+        }
+        is_moved
     }
 
     /// As [`row`](Self::row), without the word, for a number of this `key`.
@@ -139,18 +233,21 @@ impl Sliders {
         // Rounded as displayed, so that the request is recognised in the rig's answer.
         let fine = 10f64.powi(number.decimals as i32);
         let rounded = |value: f64| (value * fine).round() / fine;
-        let actual = rounded(actual);
+        let actual = rounded(actual * number.scale);
         let shown = held.shown(now_s, &actual);
         let mut value = shown;
-        let slider = Slider::new(&mut value, number.range.clone())
+        let ends = [number.range.start(), number.range.end()].map(|end| end * number.scale);
+        let slider = Slider::new(&mut value, ends[0]..=ends[1])
             .suffix(number.unit)
+            .show_value(number.has_digits)
             .max_decimals(number.decimals)
-            .logarithmic(number.factors)
+            .logarithmic(number.is_by_factors())
             .smallest_positive(0.5 / fine)
             .clamping(SliderClamping::Never)
             .update_while_editing(false);
         let response = ui.push_id(key, |ui| ui.add(slider)).inner;
-        let response = response.on_hover_text(translated(number.hover));
+        let hint = number.hint.unwrap_or_else(|| translated(number.help));
+        let response = response.on_hover_text(hint);
         let value = rounded(value);
         let moved = (response.changed() && value != shown).then_some(value);
         if moved.is_some() || response.dragged() {
@@ -158,10 +255,12 @@ impl Sliders {
         }
         let is_done = response.drag_stopped() || moved.is_some() && !response.dragged();
         let settled = (is_done && value != actual).then_some(value);
+        let in_unit = |value: f64| value / number.scale;
         let change = Change {
-            moved,
-            settled,
+            moved: moved.map(in_unit),
+            settled: settled.map(in_unit),
             shown: value,
+            is_dragged: response.dragged(),
         };
         (response, change)
     }

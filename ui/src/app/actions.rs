@@ -3,18 +3,18 @@
 use eframe::egui::{self, Color32, Context, Event, Stroke};
 use glam::{DVec2, DVec3};
 use maulstick_brush::palette_place::{Side, beside, is_out, is_same, mirrored, over, size_m};
-use maulstick_painting::edits::{LoadFrom, Place, Wells};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
-use maulstick_types::values::{BrushName, Distance};
 
 use super::{App, STILL};
 use crate::input::keys::Action;
-use crate::input::mouse_stylus::Pointer;
 use crate::input::navigation::{Around, is_panel, place};
+use crate::panels::desk_edits;
 use crate::settings::preferences::Preferences;
 use crate::view::camera::View;
 use crate::view::fit_crosses;
 use crate::view::well_labels::{self, Shown};
+use maulstick_client::force_history;
+use maulstick_window_pen::mouse::Pointer;
 
 /// A newton is shown so long, m.
 const ARROW_M_N: f64 = 0.02;
@@ -91,16 +91,12 @@ impl App {
             let plane = self.studio.rig.desk.as_ref()?.under(at)?;
             let plane = plane.holds(at).then_some(plane)?;
             let at = plane.to_desk.inverse().point(at) / plane.zoom;
-            Some((plane.id, [at.x, at.y].map(Distance::new)))
+            Some((plane.id, [at.x, at.y]))
         });
-        match (under, BrushName::new(name)) {
-            (Some((surface, [Ok(x), Ok(y)])), Ok(brush)) => self.studio.requests.send(LoadFrom {
-                x,
-                y,
-                surface,
-                thinner: self.studio.preferences.brushes.loading.share(),
-                brush,
-            }),
+        let thinner = self.studio.preferences.brushes.loading.share();
+        let load = under.map(|place| desk_edits::load_from(name, place, thinner));
+        match load {
+            Some(Ok(load)) => self.studio.requests.send(load),
             _ => self.studio.notifications.fault(
                 tr!("The brush is over neither the canvas nor the palette."),
                 tr!("Move it over the mixture that it is to take up."),
@@ -121,7 +117,7 @@ impl App {
             true => beside(canvas, palette, side),
             false => over(canvas, palette),
         };
-        if let Ok(edit) = Place::new(PALETTE, pose, palette.zoom) {
+        if let Ok(edit) = desk_edits::lay_palette(pose, palette.zoom) {
             self.studio.requests.send(edit);
         }
     }
@@ -143,8 +139,27 @@ impl App {
         };
         let navigation = &mut self.hands.navigation;
         context.input(|input| navigation.follow(input, &around));
-        let brush = self.studio.rig.brush_name();
-        let aim = self.connection.tracker.aim(brush);
+        let aim = self.connection.tracker.aim(self.studio.rig.brush_name());
+        let now_s = context.input(|input| input.time);
+        let painting = aim.is_some_and(|(_, in_air)| !in_air);
+        let wide_m = f64::from(view.area.width()) / view.scale;
+        let at = aim.map(|(at, _)| (at.truncate() - view.middle) / wide_m);
+        let at = gone(context, view).or(at);
+        self.follow_clean_key(context, painting);
+        let free = !painting && !self.hands.navigation.holds();
+        if self.hands.palette_gesture.follow(
+            now_s,
+            at,
+            wide_m,
+            free,
+            side(&self.studio.preferences),
+        ) {
+            self.slide();
+        }
+    }
+
+    /// Follows the cleaning key; `painting` while the brush touches something.
+    fn follow_clean_key(&mut self, context: &Context, painting: bool) {
         let now_s = context.input(|input| input.time);
         let typing = context.memory(|memory| memory.focused().is_some());
         // A tap may be shorter than a frame.
@@ -153,7 +168,6 @@ impl App {
             let key = key.logical_key;
             !typing && context.input(|input| input.key_down(key) || input.key_pressed(key))
         });
-        let painting = aim.is_some_and(|(_, in_air)| !in_air);
         if painting && typing {
             // A stylus that is no pointer takes the keyboard from no field.
             context.memory_mut(|memory| {
@@ -168,19 +182,6 @@ impl App {
             .follow(now_s, is_down, painting, &handling);
         if self.hands.clean_key.is_down() {
             context.request_repaint_after(STILL);
-        }
-        let wide_m = f64::from(view.area.width()) / view.scale;
-        let at = aim.map(|(at, _)| (at.truncate() - view.middle) / wide_m);
-        let at = gone(context, view).or(at);
-        let free = !painting && !self.hands.navigation.holds();
-        if self.hands.palette_gesture.follow(
-            now_s,
-            at,
-            wide_m,
-            free,
-            side(&self.studio.preferences),
-        ) {
-            self.slide();
         }
     }
 
@@ -255,8 +256,8 @@ impl App {
         };
         let wells = mirrored(&palette.wells, size_m(palette));
         if let (Ok(laid), Ok(wells)) = (
-            Place::new(PALETTE, pose, palette.zoom),
-            Wells::new(PALETTE, wells),
+            desk_edits::lay_palette(pose, palette.zoom),
+            desk_edits::lay_wells(wells),
         ) {
             self.studio.requests.send(laid);
             self.studio.requests.send(wells);

@@ -4,9 +4,7 @@ use eframe::egui::Context;
 use maulstick_rig::{NodeHandle, UserError};
 
 use crate::app::studio::Studio;
-use crate::input::brush_turn::BrushTurn;
 use crate::input::clean_key::CleanKey;
-use crate::input::mouse_stylus::{Mouse, Pointer};
 use crate::input::navigation::Navigation;
 use crate::input::palette_gesture::PaletteGesture;
 use crate::input::pen::WindowPen;
@@ -14,6 +12,8 @@ use crate::input::pointer_path::PointerPath;
 use crate::rig::brushes::BrushTracker;
 use crate::rig::state::BrushContact;
 use crate::view::camera::View;
+use maulstick_window_pen::mouse::brush_turn::BrushTurn;
+use maulstick_window_pen::mouse::{Mouse, Pointer};
 
 /// Mouse, pen and gestures.
 pub(super) struct Hands {

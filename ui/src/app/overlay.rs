@@ -4,13 +4,10 @@ pub(crate) mod bar;
 mod column;
 mod first_run;
 mod help_pages;
-mod outcome_words;
 mod table_of_keys;
 
 use eframe::egui::{self, Context, Rect, Ui};
-use maulstick_painting::edits::{Clean, Dry, Redo, Relight, Scrape, Undo};
-use maulstick_types::scene::{CANVAS, Light, PALETTE};
-use maulstick_types::values::BrushName;
+use maulstick_types::scene::Light;
 
 use self::column::Column;
 use self::first_run::FirstRun;
@@ -25,6 +22,8 @@ use crate::input::size_drag::SizeDrag;
 use crate::matching::colour_window::ColourWindow;
 use crate::motions::Motions;
 use crate::panels;
+use crate::panels::desk_edits;
+use crate::panels::history::outcome_words;
 use crate::panels::light::lamp_undo::LampUndo;
 use crate::reference::Reference;
 use crate::rig::state::RigState;
@@ -213,23 +212,20 @@ impl Overlay {
         match act {
             Action::Undo => match self.lamp_undo.undo(work.rig) {
                 Some(light) => relight(work, light),
-                None => work.requests.send(Undo { brush: None }),
+                None => work.requests.send(desk_edits::undo()),
             },
             Action::Redo => match self.lamp_undo.redo(work.rig) {
                 Some(light) => relight(work, light),
-                None => work.requests.send(Redo { brush: None }),
+                None => work.requests.send(desk_edits::redo()),
             },
-            Action::Dry => work.requests.send(Dry::whole(CANVAS)),
-            Action::Scrape => work.requests.send(Scrape {
-                region: None,
-                surface: PALETTE,
-            }),
+            Action::Dry => work.requests.send(desk_edits::dry()),
+            Action::Scrape => work.requests.send(desk_edits::scrape()),
             Action::Smaller => work.step_width(false),
             Action::Larger => work.step_width(true),
             Action::NextBrush => work.next_brush(),
             Action::Clean => {
-                let brush = BrushName::new(work.rig.brush_name());
-                ask(work, brush.map(|brush| Clean { brush }));
+                let clean = desk_edits::clean(work.rig.brush_name());
+                ask(work, clean);
             }
             Action::ForceOff => panels::device::force_off(work),
             Action::Record => work.requests.session(match work.rig.recording {
@@ -357,8 +353,7 @@ fn follow_mouse(act: Action, work: &mut PanelContext<'_>) -> bool {
 
 /// Brings back a light that undo or redo leads to.
 fn relight(work: &mut PanelContext<'_>, light: Light) {
-    let expose = false;
-    work.requests.send(Relight { light, expose });
+    work.requests.send(desk_edits::relight(light));
     work.notifications
         .note(tr!("The light is as it was").to_owned());
 }

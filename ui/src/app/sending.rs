@@ -48,9 +48,10 @@ impl Sending {
         })
     }
 
-    /// Ends recording and replay, while the window is still in the rig.
+    /// Ends recording, replay and the set-up of devices, while the window is still in the rig.
     pub(super) fn end(&mut self) {
         self.sessions.end();
+        self.device_setup.end();
     }
 
     /// Reads how far the strokes are painted.

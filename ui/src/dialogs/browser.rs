@@ -185,24 +185,29 @@ impl Browser {
         (!entry.is_folder).then(|| self.path())
     }
 
-    fn list(&mut self, ui: &mut Ui, fitting: &[Entry]) -> Option<PathBuf> {
-        if let Some(pictures) = &mut self.pictures {
-            pictures.take_in(ui.ctx());
-        }
-        let told = match self.folder.entries(ui.ctx()) {
+    /// Reason why there is nothing to list, in words.
+    fn lack(&mut self, context: &Context, fitting: &[Entry]) -> Option<String> {
+        match self.folder.entries(context) {
             None => Some(tr!("Looking …").to_owned()),
-            Some(Err(what)) => Some(dialog::in_words(what, "")),
+            Some(Err(error)) => Some(dialog::in_words(&paths::unlisted(error), "")),
             Some(Ok(_)) if fitting.is_empty() && self.purpose == Purpose::Read => {
                 Some(tr!("No file here starts with that.").to_owned())
             }
             Some(Ok(_)) => None,
-        };
+        }
+    }
+
+    fn list(&mut self, ui: &mut Ui, fitting: &[Entry]) -> Option<PathBuf> {
+        if let Some(pictures) = &mut self.pictures {
+            pictures.take_in(ui.ctx());
+        }
+        let lack = self.lack(ui.ctx(), fitting);
         let mut taken = None;
         let frame = eframe::egui::Frame::group(ui.style());
         frame.show(ui, |ui| {
             ui.set_min_size(vec2(ui.available_width(), HEIGHT));
-            if let Some(told) = told {
-                ui.weak(told);
+            if let Some(lack) = lack {
+                ui.weak(lack);
                 return;
             }
             let above = self.folder.path.parent().is_some().then(|| Entry {

@@ -6,6 +6,7 @@ use eframe::egui::Context;
 use maulstick_exchange::PictureKind;
 
 use crate::dialogs::browser::{Browser, Purpose};
+use crate::dialogs::dialog::fault::DialogFault;
 use crate::dialogs::dialog::{self, Answer, Foot};
 use crate::dialogs::open::discard_prompt::UnsavedState;
 use crate::dialogs::paths;
@@ -89,19 +90,13 @@ impl ChooseFile {
         dialog::decided(answer, chosen, &mut self.wrong)
     }
 
-    fn check(&self, path: PathBuf) -> Result<PathBuf, String> {
+    fn check(&self, path: PathBuf) -> Result<PathBuf, DialogFault> {
         self.unkept.check()?;
-        if path.is_file() {
-            return Ok(path);
+        match self.kind {
+            _ if path.is_file() => Ok(path),
+            Kind::Picture => Err(DialogFault::NoPicture(path)),
+            Kind::Recording => Err(DialogFault::NoRecording(path)),
         }
-        let file = paths::shown(&path);
-        Err(match self.kind {
-            Kind::Picture => tr!(
-                "{file} is no file. Choose a PNG, JPEG, TIFF, OpenEXR or OpenRaster of the list.",
-                file
-            ),
-            Kind::Recording => tr!("{file} is no file. Choose a recording of the list.", file),
-        })
     }
 }
 

@@ -1,9 +1,14 @@
-//! The frame of a dialog: title, questions, errors, two buttons. Enter confirms, Escape cancels.
+//! The frame of a dialog: title, questions, errors, two buttons. Enter confirms, Escape cancels. `fault` says what is
+//! wrong with what is written in one.
 
 use eframe::egui::text_edit::TextEditState;
 use eframe::egui::{
     Align, Color32, Context, Frame, Id, Key, Layout, Margin, Modal, RichText, Ui, Visuals,
 };
+
+use fault::DialogFault;
+
+pub(crate) mod fault;
 
 /// Width of a dialog, points.
 pub(crate) const WIDTH: f32 = 420.0;
@@ -82,7 +87,7 @@ pub(crate) fn show(
 /// The request, once the painter confirms; on an error the dialog stays and shows it.
 pub(crate) fn decided<T>(
     answer: Answer,
-    asked: Option<Result<T, String>>,
+    asked: Option<Result<T, DialogFault>>,
     wrong: &mut Option<String>,
 ) -> (Answer, Option<T>) {
     match asked {
@@ -91,8 +96,8 @@ pub(crate) fn decided<T>(
             *wrong = None;
             (answer, Some(asked))
         }
-        Some(Err(words)) => {
-            *wrong = Some(words);
+        Some(Err(fault)) => {
+            *wrong = Some(fault.to_string());
             (Answer::Stay, None)
         }
     }
@@ -147,22 +152,6 @@ pub(crate) fn line(
     }
     let response = ui.add(edit).labelled_by(name.id);
     response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
-}
-
-/// The number of a field, with a point or a comma.
-///
-/// # Errors
-/// Error and advice in words.
-pub(crate) fn number(what: &str, text: &str) -> Result<f64, String> {
-    let plain = text.trim().replace(',', ".");
-    let number: Option<f64> = plain.parse().ok();
-    number.filter(|number| number.is_finite()).ok_or_else(|| {
-        tr!(
-            "{what}: “{text}” is no number. Write one such as 20 or 0.5.",
-            what,
-            text = text.trim()
-        )
-    })
 }
 
 /// Error and advice of a node in a painter's words.

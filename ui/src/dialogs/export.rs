@@ -9,7 +9,8 @@ use maulstick_types::command::{Command, ExportOrder, FileCommand};
 use maulstick_ui_kit::language::{known, translated};
 
 use crate::dialogs::browser::{Browser, Purpose};
-use crate::dialogs::dialog::{self, Answer, Foot, line, number};
+use crate::dialogs::dialog::fault::{DialogFault, named, number, writable};
+use crate::dialogs::dialog::{self, Answer, Foot, line};
 use crate::dialogs::paths;
 
 /// A file format: its name in the command, its file ending, its description.
@@ -104,33 +105,17 @@ impl ExportPicture {
     /// The command.
     ///
     /// # Errors
-    /// Error and advice in words.
-    fn command(&self, path: &Path) -> Result<Command, String> {
+    /// [`DialogFault`].
+    fn command(&self, path: &Path) -> Result<Command, DialogFault> {
         let ending = paths::ending(path);
         let format = &FORMATS[self.format];
         if !ending.is_empty() && ending != format.ending {
-            return Err(tr!(
-                "A name that ends in .{ending} says nothing that can be written. End it in .png, \
-                 .ora, .exr, .stl or .glb.",
-                ending
-            ));
+            return Err(DialogFault::NoFormat(ending));
         }
-        if path.file_name().is_none() {
-            return Err(tr!("Write the name of a file.").to_owned());
-        }
-        let path = paths::ending_in(path, format.ending);
-        if path.is_dir() {
-            return Err(tr!("Write the name of a file.").to_owned());
-        }
-        if !path.parent().is_some_and(Path::is_dir) {
-            return Err(tr!(
-                "There is no folder {folder}. Write one that is there.",
-                folder = paths::shown(path.parent().unwrap_or(Path::new("/")))
-            ));
-        }
+        let path = writable(path, format.ending)?;
         let mut order = ExportOrder {
             format: format.name.to_owned(),
-            ..ExportOrder::to(paths::named(&path)?)
+            ..ExportOrder::to(named(&path)?)
         };
         match format.name {
             "png" => (order.bits, order.profile) = (self.bits, self.profile.to_owned()),
@@ -139,10 +124,7 @@ impl ExportPicture {
                 order.exaggeration = number(tr!("Heights"), &self.exaggeration)?;
                 order.base_m = base_mm * 1e-3;
                 if base_mm <= 0.0 || order.exaggeration <= 0.0 {
-                    return Err(tr!(
-                        "Base and heights: write numbers above 0; 2 mm and 1 are usual."
-                    )
-                    .to_owned());
+                    return Err(DialogFault::Flat);
                 }
             }
             _ => {}

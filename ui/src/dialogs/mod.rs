@@ -42,6 +42,7 @@ use crate::sessions::SessionOrder;
 use crate::widgets::context::PanelContext;
 use choose::ChooseFile;
 use close::{ClosePainting, Decision};
+use dialog::fault::named;
 pub(crate) use dialog::wrong;
 use dialog::{Answer, in_words};
 use dropped::Dropped;
@@ -263,32 +264,11 @@ impl Files {
                 let decision = close.show(context);
                 return self.decide(decision, work);
             }
-            Dialog::Picture(picture) => {
-                let (answer, path) = picture.show(context);
+            Dialog::Picture(choose) | Dialog::Tracing(choose) | Dialog::Recording(choose) => {
+                let (answer, path) = choose.show(context);
+                let forget = choose.forgets();
                 if let Some(path) = path {
-                    reference.pin(context, &path, work.preferences);
-                    self.dialog = None;
-                    return;
-                }
-                (answer, None)
-            }
-            Dialog::Tracing(picture) => {
-                let (answer, path) = picture.show(context);
-                if let Some(path) = path {
-                    work.trace(&path);
-                    self.dialog = None;
-                    return;
-                }
-                (answer, None)
-            }
-            Dialog::Recording(choose) => {
-                let (answer, recording) = choose.show(context);
-                if let Some(recording) = recording {
-                    let forget = choose.forgets();
-                    work.requests
-                        .session(SessionOrder::Play { recording, forget });
-                    self.dialog = None;
-                    return;
+                    return self.take(context, (path, forget), reference, work);
                 }
                 (answer, None)
             }
@@ -306,6 +286,24 @@ impl Files {
                 }
             }
             _ => {}
+        }
+    }
+
+    /// Takes the file that was chosen; `forget` where the painting on the easel may go.
+    fn take(
+        &mut self,
+        context: &Context,
+        (path, forget): (PathBuf, bool),
+        reference: &mut Reference,
+        work: &mut PanelContext<'_>,
+    ) {
+        match self.dialog.take() {
+            Some(Dialog::Picture(_)) => reference.pin(context, &path, work.preferences),
+            Some(Dialog::Tracing(_)) => work.trace(&path),
+            _ => work.requests.session(SessionOrder::Play {
+                recording: path,
+                forget,
+            }),
         }
     }
 
@@ -436,19 +434,19 @@ impl Files {
 
     /// Opens a painting without a dialog, unless there is something to ask.
     fn open_path(&mut self, context: &Context, path: &Path, work: &mut PanelContext<'_>) {
-        if let Err(words) = UnsavedState::of(work.rig).check() {
+        if let Err(fault) = UnsavedState::of(work.rig).check() {
             let mut open = self.choose(context, work);
             open.propose(path);
-            open.refused(words);
+            open.refused(fault.to_string());
             self.begin(Dialog::Open(open));
             return;
         }
         work.notifications
             .note(tr!("Opening {file} …", file = paths::name(path)));
         let forget = false;
-        match paths::named(path) {
+        match named(path) {
             Ok(path) => drop(ask(RigCommand::Open { path, forget }.into(), work)),
-            Err(words) => work.notifications.fault(words, String::new()),
+            Err(fault) => work.notifications.fault(fault.to_string(), String::new()),
         }
     }
 }

@@ -6,11 +6,12 @@ use eframe::egui::{ComboBox, Context, Grid, Key, TextEdit, Ui};
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_types::command::{Command, NewCanvas, RigCommand};
 use maulstick_types::scene::default_stain_m;
-use maulstick_types::values::{MaterialName, ValueError, WholePath};
+use maulstick_types::values::{MaterialName, WholePath};
 use maulstick_ui_kit::language::{capitalized, known, translated};
 use maulstick_ui_kit::units::Units;
 
-use crate::dialogs::dialog::{self, Answer, Foot, in_words, line, number};
+use crate::dialogs::dialog::fault::{DialogFault, named, number, writable};
+use crate::dialogs::dialog::{self, Answer, Foot, line};
 use crate::dialogs::open::discard_prompt::UnsavedState;
 use crate::dialogs::paths;
 
@@ -87,36 +88,30 @@ impl NewPainting {
     /// The canvas.
     ///
     /// # Errors
-    /// Error and advice in words.
-    fn canvas(&self) -> Result<NewCanvas, String> {
+    /// [`DialogFault`].
+    fn canvas(&self) -> Result<NewCanvas, DialogFault> {
         let width = number(tr!("Width"), &self.width)?;
         let height = number(tr!("Height"), &self.height)?;
         let fine = number(tr!("Cells per mm"), &self.fine)?;
         if fine <= 0.0 {
-            return Err(tr!("Cells per mm: write a number above 0; 4 is usual.").to_owned());
+            return Err(DialogFault::NoCells);
         }
         let ground = match self.ground {
-            FILE if self.ground_file.trim().is_empty() => {
-                return Err(tr!(
-                    "Ground: write the path of a picture, or of a measured ground, a line for each wavelength in nm and its reflectance."
-                )
-                .to_owned());
-            }
+            FILE if self.ground_file.trim().is_empty() => return Err(DialogFault::NoGround),
             FILE => paths::whole(&self.ground_file).display().to_string(),
             name => name.to_owned(),
         };
-        let wrong = |error: ValueError| in_words(&error.to_string(), "");
         let (unit_m, _) = self.units.large();
         let canvas = NewCanvas {
             width_m: width * unit_m,
             height_m: height * unit_m,
             cell_m: 1e-3 / fine,
-            ground: MaterialName::new(ground).map_err(wrong)?,
-            tooth: MaterialName::new(&*self.tooth).map_err(wrong)?,
+            ground: MaterialName::new(ground)?,
+            tooth: MaterialName::new(&*self.tooth)?,
             tooth_seed: 1,
             stain_m: default_stain_m(),
         };
-        canvas.check().map_err(wrong)?;
+        canvas.check()?;
         Ok(canvas)
     }
 
@@ -124,19 +119,13 @@ impl NewPainting {
     ///
     /// # Errors
     /// As [`canvas`](Self::canvas), and if the file cannot be created there.
-    fn command(&self) -> Result<Command, String> {
+    fn command(&self) -> Result<Command, DialogFault> {
         let canvas = self.canvas()?;
         if canvas.is_slow() && !self.may_be_slow {
-            return Err(tr!(
-                "Painting on so many cells is slow. Choose larger ones, 4 per mm are usual, or tick that it may be slow."
-            )
-            .to_owned());
+            return Err(DialogFault::Slow);
         }
         self.unkept.check()?;
-        let path = match self.as_sketch {
-            true => None,
-            false => Some(self.file()?),
-        };
+        let path = (!self.as_sketch).then(|| self.file()).transpose()?;
         Ok(RigCommand::New {
             path,
             canvas,
@@ -146,24 +135,15 @@ impl NewPainting {
     }
 
     /// The whole path of its file.
-    fn file(&self) -> Result<WholePath, String> {
+    fn file(&self) -> Result<WholePath, DialogFault> {
         if self.path.trim().is_empty() || self.path.trim().ends_with('/') {
-            return Err(tr!("Keep in: write the name of a file, or begin a sketch.").to_owned());
+            return Err(DialogFault::NoPaintingName);
         }
         let path = paths::ending_in(&paths::whole(&self.path), paths::PAINTING);
         if path.exists() {
-            return Err(tr!(
-                "There is a file {file} already. Write another name, or open that one.",
-                file = paths::shown(&path)
-            ));
+            return Err(DialogFault::Taken(path));
         }
-        if !path.parent().is_some_and(Path::is_dir) {
-            return Err(tr!(
-                "There is no folder {folder}. Write one that is there.",
-                folder = paths::shown(path.parent().unwrap_or(Path::new("/")))
-            ));
-        }
-        paths::named(&path)
+        named(&writable(&path, paths::PAINTING)?)
     }
 
     /// Shows the dialog.
@@ -182,7 +162,7 @@ impl NewPainting {
                     }
                     self.wrong.clone()
                 }
-                Err(words) => Some(words),
+                Err(fault) => Some(fault.to_string()),
             };
             self.unkept.show(ui);
             Foot {

@@ -9,6 +9,7 @@ use eframe::egui::Context;
 use maulstick_types::command::{Command, RigCommand};
 
 use crate::dialogs::browser::{Browser, Purpose};
+use crate::dialogs::dialog::fault::{DialogFault, named};
 use crate::dialogs::dialog::{self, Answer, Foot};
 use crate::dialogs::open::discard_prompt::UnsavedState;
 use crate::dialogs::open::recent::RecentList;
@@ -74,19 +75,16 @@ impl OpenPainting {
         self
     }
 
-    fn command(&self, path: &Path) -> Result<Command, String> {
+    fn command(&self, path: &Path) -> Result<Command, DialogFault> {
         self.unkept.check()?;
         if path.is_dir() {
-            return Err(tr!("This is a folder. Choose a painting in it.").to_owned());
+            return Err(DialogFault::Folder);
         }
         if !path.exists() {
-            return Err(tr!(
-                "There is no file {file}. Choose one of the list, or begin a new one.",
-                file = paths::shown(path)
-            ));
+            return Err(DialogFault::NoPainting(path.to_owned()));
         }
         Ok(RigCommand::Open {
-            path: paths::named(path)?,
+            path: named(path)?,
             forget: self.unkept.let_go(),
         }
         .into())

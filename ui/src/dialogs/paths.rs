@@ -1,25 +1,24 @@
 //! File paths, as they are typed and as they are shown.
 
+use std::io::{Error, ErrorKind};
 use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use directories::{BaseDirs, UserDirs};
 pub(crate) use maulstick_rig::files::ending;
 use maulstick_rig::files::first_free;
-use maulstick_types::values::WholePath;
 
 /// File ending of a painting.
 pub(crate) const PAINTING: &str = "maul";
 
-/// A whole path as messages carry it.
-///
-/// # Errors
-/// What is wrong with it, in words.
-pub(crate) fn named(path: &Path) -> Result<WholePath, String> {
-    let name = path.to_str().map(WholePath::new);
-    match name {
-        Some(named) => named.map_err(|error| tr!("This path cannot be used: {error}.", error)),
-        None => Err(tr!("This path is not UTF-8: give the file another name.").to_owned()),
+/// Reason why a folder cannot be listed, in words.
+#[must_use]
+pub(crate) fn unlisted(error: &Error) -> String {
+    match error.kind() {
+        ErrorKind::NotFound => tr!("there is no such folder").to_owned(),
+        ErrorKind::NotADirectory => tr!("this is no folder").to_owned(),
+        ErrorKind::PermissionDenied => tr!("this folder is closed to you").to_owned(),
+        _ => tr!("the folder cannot be read: {error}", error),
     }
 }
 

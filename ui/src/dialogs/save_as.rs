@@ -6,6 +6,7 @@ use eframe::egui::Context;
 use maulstick_types::command::{self, Command, RigCommand};
 
 use crate::dialogs::browser::{Browser, Purpose};
+use crate::dialogs::dialog::fault::{DialogFault, named, writable};
 use crate::dialogs::dialog::{self, Answer, Foot};
 use crate::dialogs::open::PAINTINGS;
 use crate::dialogs::paths;
@@ -46,31 +47,15 @@ impl SaveAs {
         self.wrong = Some(words);
     }
 
-    fn command(&mut self, path: &Path) -> Result<Command, String> {
-        if path.file_name().is_none() {
-            return Err(tr!("Write the name of a file.").to_owned());
-        }
-        let path = paths::ending_in(path, paths::PAINTING);
-        if path.is_dir() {
-            return Err(tr!("Write the name of a file.").to_owned());
-        }
-        if !path.parent().is_some_and(Path::is_dir) {
-            return Err(tr!(
-                "There is no folder {folder}. Write one that is there.",
-                folder = paths::shown(path.parent().unwrap_or(Path::new("/")))
-            ));
-        }
+    fn command(&mut self, path: &Path) -> Result<Command, DialogFault> {
+        let path = writable(path, paths::PAINTING)?;
         let may_go = |(found, may_go): &(PathBuf, bool)| *found == path && *may_go;
         let replace = self.found.as_ref().is_some_and(may_go);
         if path.exists() && !replace {
-            let words = tr!(
-                "There is a file {file} already. Write another name, or tick that it may go.",
-                file = paths::shown(&path)
-            );
-            self.found = Some((path, false));
-            return Err(words);
+            self.found = Some((path.clone(), false));
+            return Err(DialogFault::Replaces(path));
         }
-        let path = paths::named(&path)?;
+        let path = named(&path)?;
         Ok(RigCommand::SaveAs(command::SaveAs { path, replace }).into())
     }
 

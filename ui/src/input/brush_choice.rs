@@ -6,26 +6,27 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use maulstick_brush::{BrushError, BrushFile};
-use maulstick_painting::edits::{Handle, Load, Tune};
 use maulstick_rig::UserError;
 use maulstick_rig::files::ending;
+use maulstick_types::Mixture;
 use maulstick_types::command::{BrushCommand, Command};
 use maulstick_types::scene::{BrushHandling, Tuning};
 use maulstick_types::values::{BrushName, BrushToml};
 
+use crate::panels::desk_edits;
 use crate::rig::state::{BrushContact, RigBrush};
 use crate::settings::brush_library::{called, is_of_library, library, of_library};
 use crate::settings::brush_load::{BrushLoad, written};
 use crate::widgets::context::PanelContext;
+use maulstick_brush::file::quantities::HeadWidth;
 use maulstick_client::dispatcher::Outcome;
 use maulstick_client::request::Request;
+use maulstick_types::values::Quantity;
 
 /// A painter's step from one width to the next: this factor, but at least half a millimetre.
 const STEP: f64 = 0.15;
 /// Widths are whole numbers of these, mm.
 const GRAIN_MM: f64 = 0.5;
-/// Widths offered for a brush file that lists no sizes, mm.
-const OFFERED_MM: RangeInclusive<f64> = 0.5..=60.0;
 
 /// A brush at another width, mm; one of the library from its own numbers, so that they do not drift.
 ///
@@ -61,7 +62,7 @@ pub(crate) fn widths_mm(file: &BrushFile) -> RangeInclusive<f64> {
     };
     let sizes = file.sizes_mm.iter().copied();
     let [least, most] = match file.sizes_mm.is_empty() {
-        true => [*OFFERED_MM.start(), *OFFERED_MM.end()],
+        true => [*HeadWidth::USUAL.start(), *HeadWidth::USUAL.end()],
         false => [sizes.clone().fold(now, f64::min), sizes.fold(now, f64::max)],
     };
     farthest(least.min(now))..=farthest(most.max(now))
@@ -179,17 +180,19 @@ impl PanelContext<'_> {
     }
 
     /// Writes what the brush in the hand was loaded with into the field of its paint, wherever that was asked for.
-    fn loaded(&mut self, load: &Load) {
+    fn loaded(
+        &mut self,
+        command: &Command,
+        brush: &str,
+        (mixture, beside): (&Mixture, Option<&Mixture>),
+    ) {
         let name = self.rig.brush_name();
-        let known = self
-            .preferences
-            .brushes
-            .loading
-            .edit(name, &self.rig.library);
-        if load.brush.as_str() == name && known.ok().as_ref() != Some(load) {
-            self.preferences.brushes.loading = BrushLoad {
-                paint: written(&load.mixture),
-                beside: load.beside.as_ref().map(written),
+        let loading = &mut self.preferences.brushes.loading;
+        let known = loading.command(name, &self.rig.library);
+        if brush == name && known.ok().as_ref() != Some(command) {
+            *loading = BrushLoad {
+                paint: written(mixture),
+                beside: beside.map(written),
                 thinner: 0.0,
             };
         }
@@ -200,9 +203,9 @@ impl PanelContext<'_> {
     pub(crate) fn brush_answered(&mut self, outcome: &Outcome) {
         if let Request::Command { command, .. } = &outcome.request
             && outcome.result.is_ok()
-            && let Some(load) = command.edit()
+            && let Some((brush, mixture, beside)) = desk_edits::loaded(command)
         {
-            return self.loaded(&load);
+            return self.loaded(command, &brush, (&mixture, beside.as_ref()));
         }
         let Request::Command {
             command: Command::Brush(BrushCommand::Define { brush, toml }),
@@ -257,7 +260,7 @@ impl PanelContext<'_> {
                 stiffness: before.stiffness,
                 wetness: before.wetness,
             };
-            if let Ok(tune) = Tune::try_from(&tuning) {
+            if let Ok(tune) = desk_edits::tune(&tuning) {
                 self.requests.send(tune);
             }
         }
@@ -265,7 +268,7 @@ impl PanelContext<'_> {
             most_m: 0.0,
             ..handling
         };
-        if let (true, Ok(handle)) = (is_limited, Handle::try_from(&unlimited)) {
+        if let (true, Ok(handle)) = (is_limited, desk_edits::handle(&unlimited)) {
             self.requests.send(handle);
         }
         self.notifications.note(words);

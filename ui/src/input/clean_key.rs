@@ -1,9 +1,8 @@
 //! The cleaning key: a tap cleans the brush; while it is held the brush lifts paint.
 
-use maulstick_painting::edits::{Clean, Handle};
 use maulstick_types::scene::{BrushHandling, BrushMode};
-use maulstick_types::values::BrushName;
 
+use crate::panels::desk_edits;
 use crate::rig::requests::Requests;
 use maulstick_client::request::Request;
 
@@ -45,8 +44,8 @@ impl CleanKey {
                     ..
                 }) => handle(requests, &handling),
                 Some(Down { brush, .. }) => {
-                    if let Ok(brush) = BrushName::new(brush) {
-                        requests.send(Clean { brush });
+                    if let Ok(clean) = desk_edits::clean(&brush) {
+                        requests.send(clean);
                     }
                 }
                 None => {}
@@ -83,14 +82,16 @@ impl CleanKey {
 
 /// Uses a brush so.
 fn handle(requests: &mut Requests, handling: &BrushHandling) {
-    if let Ok(edit) = Handle::try_from(handling) {
+    if let Ok(edit) = desk_edits::handle(handling) {
         requests.send(edit);
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use maulstick_painting::edits::{Clean, Handle};
     use maulstick_types::command::Command;
+    use maulstick_types::values::BrushName;
 
     use super::*;
 

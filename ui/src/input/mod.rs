@@ -6,27 +6,21 @@
 //! | [`keymap`] | the keys that the painter has chosen |
 //! | [`presses`] | presses of keys |
 //! | [`pointer_path`] | path of the pointer, and where its button presses the brush |
-//! | [`pixel_path`] | the same without the steps of whole pixels |
 //! | [`ruler`] | straight strokes |
 //! | [`size_drag`] | width of the brush by dragging |
-//! | [`mouse_stylus`] | the mouse as a stylus |
 //! | [`pen`] | the pen over the window |
-//! | [`brush_turn`] | turn of the brush that the mouse moves |
 //! | [`navigation`] | wheel, drag and touch: moves the surfaces |
 //! | [`clean_key`] | the key that cleans the brush, or lifts paint while it is held |
 //! | [`palette_gesture`] | the wave of the brush that fetches the palette |
 //! | [`brush_choice`] | the brush in the hand and its width |
 
 pub(crate) mod brush_choice;
-pub(crate) mod brush_turn;
 pub(crate) mod clean_key;
 pub(crate) mod keymap;
 pub(crate) mod keys;
-pub(crate) mod mouse_stylus;
 pub(crate) mod navigation;
 pub(crate) mod palette_gesture;
 pub(crate) mod pen;
-pub(crate) mod pixel_path;
 pub(crate) mod pointer_path;
 pub(crate) mod presses;
 pub(crate) mod ruler;

@@ -5,10 +5,13 @@ use std::path::Path;
 
 use eframe::egui::Key;
 use maulstick_appearance::ground::GROUNDS;
+use maulstick_brush::file::quantities;
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_rig::config::{ACTIONS, FORCES};
-use maulstick_types::scene::RULES;
+use maulstick_types::scene::{self, RULES};
+use maulstick_types::values::{self, Quantity};
 use maulstick_ui_kit::language::{FILES, Language, all};
+use maulstick_window_pen::mouse::grip;
 
 use crate::input::keys::{BINDINGS, HELD};
 use crate::settings::brush_library::library;
@@ -33,6 +36,38 @@ const NAMED_KEYS: [&str; 18] = [
     "Down",
     "Left",
     "Right",
+];
+
+/// Hints of the numbers of panels that other crates define; those of the window are among its sentences.
+const HELPS: [&str; 28] = [
+    values::Share::HELP,
+    values::OpacityFactor::HELP,
+    values::ThinnerShare::HELP,
+    values::FilmThickness::HELP,
+    values::FilmLimit::HELP,
+    values::StainThickness::HELP,
+    values::MarkerFlow::HELP,
+    values::Stiffness::HELP,
+    values::Wetness::HELP,
+    values::Zoom::HELP,
+    values::Tilt::HELP,
+    values::Turn::HELP,
+    values::ForceShare::HELP,
+    values::GuidanceShare::HELP,
+    scene::Intensity::HELP,
+    scene::Exposure::HELP,
+    scene::Relief::HELP,
+    scene::Softness::HELP,
+    scene::Wavelengths::HELP,
+    grip::MousePressure::HELP,
+    grip::MouseTurn::HELP,
+    quantities::HeadWidth::HELP,
+    quantities::LoadFilm::HELP,
+    quantities::LoadInside::HELP,
+    quantities::Unevenness::HELP,
+    quantities::Lift::HELP,
+    quantities::Opening::HELP,
+    quantities::Friction::HELP,
 ];
 
 /// Use of a sentence: its English, and the names that the macro is given.
@@ -191,7 +226,7 @@ fn needed() -> BTreeSet<String> {
         .chain(grounds)
         .chain(Tooth::names());
     let settings = FORCES.into_iter().chain(ACTIONS);
-    let tables = tables.chain(settings).map(str::to_owned);
+    let tables = tables.chain(settings).chain(HELPS).map(str::to_owned);
     tables
         .chain(NAMED_KEYS.map(|key| format!("key|{key}")))
         .chain(uses().into_iter().map(|used| used.english))
@@ -335,6 +370,31 @@ fn no_control_shows_a_sentence_that_is_not_translated() {
     assert_eq!(
         bare("ui.label(\"Width\");"),
         ["Width"],
+        "a fault would pass"
+    );
+}
+
+#[test]
+fn the_range_of_every_slider_and_number_is_that_of_a_type() {
+    let bare = |code: &str| {
+        let calls = ["Slider::new(", ".range("];
+        let ranges = calls.iter().flat_map(|call| code.match_indices(call));
+        let given = ranges.map(|(at, call)| code[at + call.len()..].lines().next());
+        given
+            .flatten()
+            .filter(|line| !line.contains("::USUAL"))
+            .map(str::to_owned)
+            .collect::<Vec<String>>()
+    };
+    for (place, code) in &all_sources() {
+        // A place in a recording is as long as the recording; rows have what their type says.
+        if !place.ends_with("transport_bar.rs") && !place.ends_with("kit/src/rows.rs") {
+            assert_eq!(bare(code), [""; 0], "{place}");
+        }
+    }
+    assert_eq!(
+        bare("Slider::new(&mut um, 0.0..=50.0)"),
+        ["&mut um, 0.0..=50.0)"],
         "a fault would pass"
     );
 }

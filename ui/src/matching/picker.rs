@@ -39,8 +39,39 @@ pub(crate) struct Match {
     pub rgb: [u8; 3],
 }
 
+/// Reason why no mixture can be found.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum NoMatch {
+    /// A single paint.
+    #[error("one paint alone")]
+    OnePaint,
+    /// Too little light.
+    #[error("too dark")]
+    Dark,
+    /// A light without colours.
+    #[error("{0}")]
+    Light(String),
+    /// The search has ended without a result.
+    #[error("no result")]
+    Failed,
+}
+
+impl NoMatch {
+    /// It and advice, in the language of the window.
+    pub(crate) fn words(&self) -> String {
+        match self {
+            Self::OnePaint => {
+                tr!("With one paint there is nothing to mix. Search among all paints.").to_owned()
+            }
+            Self::Dark => tr!("It is too dark to compare colours. Turn the light up.").to_owned(),
+            Self::Light(why) => tr!("The light is none to compare colours in: {why}.", why),
+            Self::Failed => tr!("The search has failed. Pick again.").to_owned(),
+        }
+    }
+}
+
 /// Result of a search.
-pub(crate) type Matches = Result<Vec<Match>, String>;
+pub(crate) type Matches = Result<Vec<Match>, NoMatch>;
 
 /// The paints of the wells of a palette, each once; `None` for a palette without any.
 #[must_use]
@@ -62,7 +93,7 @@ pub(crate) fn of_palette(palette: Option<&Surface>) -> Option<Vec<String>> {
 /// Searches.
 ///
 /// # Errors
-/// Why nothing can be found, and what to do, in words.
+/// [`NoMatch`].
 pub(crate) fn search(ask: &Ask, library: &PaintLibrary) -> Matches {
     let paints: Vec<Paint> = match &ask.paints {
         None => library.paints().to_vec(),
@@ -72,20 +103,14 @@ pub(crate) fn search(ask: &Ask, library: &PaintLibrary) -> Matches {
         }
     };
     if paints.len() < 2 {
-        return Err(
-            tr!("With one paint there is nothing to mix. Search among all paints.").to_owned(),
-        );
+        return Err(NoMatch::OnePaint);
     }
     let gain = ask.light.intensity * ask.light.exposure;
     if gain < DARK {
-        return Err(tr!("It is too dark to compare colours. Turn the light up.").to_owned());
+        return Err(NoMatch::Dark);
     }
-    let settings = studio_settings(&ask.light).map_err(|refusal| {
-        tr!(
-            "The light is none to compare colours in: {why}.",
-            why = refusal
-        )
-    })?;
+    let settings = studio_settings(&ask.light);
+    let settings = settings.map_err(|refusal| NoMatch::Light(refusal.to_string()))?;
     let viewing = Viewing::new(&settings, library.paints());
     let target = viewing
         .display(ask.linear.map(|channel| channel / gain))
@@ -137,8 +162,7 @@ impl Picker {
             && let Poll::Ready(found) = task.poll()
         {
             if Some(ask) == self.asked.as_ref() {
-                let fell = || Err(tr!("The search has failed. Pick again.").to_owned());
-                self.found = Some(found.unwrap_or_else(fell));
+                self.found = Some(found.unwrap_or(Err(NoMatch::Failed)));
             }
             self.running = None;
         }
@@ -219,14 +243,12 @@ mod tests {
         let library = PaintLibrary::measured().expect("whole");
         let mut dark = ask([9; 3]);
         dark.light.intensity = 0.0;
-        let words = search(&dark, &library).expect_err("dark");
-        assert!(words.contains("Turn the light up"), "{words}");
+        assert_eq!(search(&dark, &library), Err(NoMatch::Dark));
         let one = Ask {
             paints: Some(vec!["Titanium White".into(), "no such paint".into()]),
             ..ask([9; 3])
         };
-        let words = search(&one, &library).expect_err("one paint");
-        assert!(words.contains("all paints"), "{words}");
+        assert_eq!(search(&one, &library), Err(NoMatch::OnePaint));
     }
 
     #[test]

@@ -1,10 +1,9 @@
 //! Rows of proposed mixtures: how far off each is, and what can be done with it.
 
 use eframe::egui::{self, Color32, Role, Sense, StrokeKind, Ui, WidgetInfo, vec2};
-use maulstick_painting::edits::Load;
-use maulstick_types::values::BrushName;
 
 use crate::matching::picker::{Match, Matches};
+use crate::panels::desk_edits;
 use crate::widgets::context::PanelContext;
 
 /// Shows what a search has found; a spinner while it runs.
@@ -16,8 +15,8 @@ pub(crate) fn matches(ui: &mut Ui, found: Option<&Matches>, work: &mut PanelCont
                 ui.weak(tr!("Mixing …"));
             });
         }
-        Some(Err(words)) => {
-            ui.label(words);
+        Some(Err(fault)) => {
+            ui.label(fault.words());
         }
         Some(Ok(all)) => {
             for found in all {
@@ -43,11 +42,7 @@ fn proposal(ui: &mut Ui, found: &Match, work: &mut PanelContext<'_>) {
             .on_hover_text(tr!("Load the brush with it"));
         load.widget_info(|| WidgetInfo::labeled(Role::Button, true, tr!("Load {words}", words)));
         if load.clicked() {
-            let load = BrushName::new(work.rig.brush_name()).map(|brush| Load {
-                mixture: found.mixture.clone(),
-                beside: None,
-                brush,
-            });
+            let load = desk_edits::load(work.rig.brush_name(), found.mixture.clone(), None);
             crate::widgets::context::ask(work, load);
         }
         let put = ui.button("+").on_hover_text(tr!("Put it on the palette"));

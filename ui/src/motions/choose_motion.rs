@@ -124,7 +124,7 @@ fn list(ui: &mut Ui, library: &Library, marked: &mut Option<PathBuf>) -> bool {
     let is_empty = !library.is_coming() && library.files.as_ref().is_ok_and(has_none);
     let told = match &library.files {
         _ if library.is_coming() => Some(tr!("Looking …").to_owned()),
-        Err(what) => Some(dialog::in_words(what, "")),
+        Err(error) => Some(dialog::in_words(&paths::unlisted(error), "")),
         Ok(_) if is_empty => Some(
             tr!("No motions are here. A motion is a file of recorded strokes, which can be painted again anywhere. Lay some into this folder, or write another folder above.")
                 .to_owned(),

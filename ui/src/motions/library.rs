@@ -1,5 +1,6 @@
 //! Takes of a folder, the names first, then one take after the other, on a thread: the folder may be on a network.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::task::Poll;
 
@@ -45,9 +46,9 @@ pub(crate) struct Library {
     pub folder: PathBuf,
     /// Length of the head that a 6-DOF stylus holds, m.
     head_m: f64,
-    listing: Option<BackgroundTask<Result<Vec<PathBuf>, String>>>,
+    listing: Option<BackgroundTask<std::io::Result<Vec<PathBuf>>>>,
     /// The files in order, or why there are none.
-    pub files: Result<Vec<(PathBuf, Known)>, String>,
+    pub files: std::io::Result<Vec<(PathBuf, Known)>>,
     reading: Option<(usize, BackgroundTask<Option<Motion>>)>,
 }
 
@@ -85,7 +86,7 @@ impl Library {
         if let Some(task) = &self.listing
             && let Poll::Ready(found) = task.poll()
         {
-            let fell = || Err(tr!("it cannot be read").to_owned());
+            let fell = || Err(ErrorKind::Interrupted.into());
             let found = found.unwrap_or_else(fell);
             let coming = |path: PathBuf| (path, Known::Coming);
             self.files = found.map(|files| files.into_iter().map(coming).collect());
@@ -112,12 +113,12 @@ impl Library {
 }
 
 /// Files of a folder that may be takes, by their names.
-fn list(folder: &Path) -> Result<Vec<PathBuf>, String> {
+fn list(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     let found = match std::fs::read_dir(folder) {
         Ok(found) => found,
         // It is made by who lays the first take into it.
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(error) => return Err(tr!("the folder cannot be read: {error}", error)),
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(error),
     };
     let is_take = |path: &PathBuf| {
         let about = std::fs::metadata(path);

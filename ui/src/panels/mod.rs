@@ -9,6 +9,8 @@
 //! | [`canvas`] | size, tooth, ground; tilt, turn, zoom |
 //! | [`history`] | undo, redo, versions |
 //! | [`device`] | styluses and their force |
+//!
+//! [`desk_edits`] has the edits that keys, gestures and dialogs ask for.
 
 use eframe::egui::Ui;
 
@@ -39,6 +41,7 @@ pub(crate) fn all() -> Vec<Box<dyn Panel>> {
 
 pub(crate) mod brush;
 pub(crate) mod canvas;
+pub(crate) mod desk_edits;
 pub(crate) mod device;
 pub(crate) mod history;
 pub(crate) mod layers;

@@ -15,11 +15,12 @@ use std::path::Path;
 
 use eframe::egui::{
     self, Color32, Context, CornerRadius, Frame, Id, Key, Modifiers, Pos2, Rect, Response,
-    RichText, Role, ScrollArea, Sense, Slider, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, Window,
-    pos2, vec2,
+    RichText, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, Window, pos2,
+    vec2,
 };
 use maulstick_optics::colour::srgb_encode;
 use maulstick_ui_kit::arrow_keys::arrow_steps;
+use maulstick_ui_kit::rows::{Number, Sliders};
 
 use crate::dialogs::paths;
 use crate::input::keys::Action;
@@ -29,6 +30,7 @@ use crate::settings::preferences::Preferences;
 use crate::widgets::context::PanelContext;
 use frame::PictureFrame;
 use picture::{Picture, Pinned};
+use settings::FrameOpacity;
 
 /// The least size of the frame, points.
 const LEAST: [f32; 2] = [220.0, 180.0];
@@ -63,6 +65,7 @@ impl Default for Look {
 /// The reference picture.
 #[derive(Debug, Default)]
 pub(crate) struct Reference {
+    sliders: Sliders,
     pinned: Pinned,
     look: Look,
     picker: Picker,
@@ -167,12 +170,13 @@ impl Reference {
                 self.look.middle = pos2(0.5, 0.5);
             }
             ui.spacing_mut().slider_width = 60.0;
-            let mut opacity = work.preferences.reference.sound().opacity;
+            let opacity = work.preferences.reference.sound().opacity;
             let label = ui.label(tr!("Opaque"));
-            let slider = Slider::new(&mut opacity, 0.1..=1.0).show_value(false);
-            let slider = ui.add(slider).labelled_by(label.id);
-            if slider.changed() {
-                work.preferences.reference.opacity = (opacity * 100.0).round() * 0.01;
+            let number = Number::percent::<FrameOpacity>("Opaque").without_digits();
+            let (slider, change) = self.sliders.bare(ui, &number, "opaque", opacity.into());
+            slider.labelled_by(label.id);
+            if let Some(opacity) = change.moved {
+                work.preferences.reference.opacity = opacity as f32;
             }
         });
         asked

@@ -19,7 +19,7 @@ const MOST_BYTES: u64 = 400 << 20;
 const AROUND: usize = 2;
 
 /// A picture in memory.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(crate) struct Picture {
     /// Pixels across and down, after reduction.
     pub size: [usize; 2],
@@ -31,35 +31,14 @@ impl Picture {
     /// Reads a file.
     ///
     /// # Errors
-    /// Error and advice in words.
-    pub(crate) fn read(path: &Path) -> Result<Self, String> {
-        let image = Image::open_within(path, MOST_BYTES).map_err(|error| match error {
-            ImportError::File(error) => {
-                tr!(
-                    "It cannot be read: {error}. See that it is still there.",
-                    error
-                )
-            }
-            ImportError::TooLarge(width, height) | ImportError::Memory(width, height) => tr!(
-                "Its {width} × {height} pixels are too many to look at. Make a smaller copy of it.",
-                width,
-                height
-            ),
-            ImportError::NotANumber(x, y) => tr!(
-                "Its pixel {x}, {y} is no number. Paint over it in the program that made it, and save it again.",
-                x,
-                y
-            ),
-            ImportError::Unsupported(_) => {
-                tr!("It is of a kind that is not read. Save it as PNG.").to_owned()
-            }
-            _ => tr!("It is damaged, or no PNG, JPEG, TIFF, OpenEXR or OpenRaster. Take another copy.").to_owned(),
-        })?;
+    /// [`ImportError`].
+    pub(crate) fn read(path: &Path) -> Result<Self, ImportError> {
+        let image = Image::open_within(path, MOST_BYTES)?;
         let own_size = image.size();
         let longer = own_size[0].max(own_size[1]);
         let less = (MOST_SIDE as f64 / longer as f64).min(1.0);
         let size = own_size.map(|side| ((side as f64 * less).round() as usize).max(1));
-        let raster = fit_to::colours(&image, size).map_err(|error| error.to_string())?;
+        let raster = fit_to::colours(&image, size)?;
         let rows = raster.rgb.rchunks_exact(size[0]);
         Ok(Self {
             size,
@@ -112,11 +91,29 @@ impl Picture {
     }
 }
 
-impl fmt::Debug for Picture {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Picture")
-            .field("size", &self.size)
-            .finish_non_exhaustive()
+/// Reason why a picture is not read, and advice, in the language of the window.
+#[must_use]
+pub(crate) fn unread(error: &ImportError) -> String {
+    match error {
+        ImportError::File(error) => tr!(
+            "It cannot be read: {error}. See that it is still there.",
+            error
+        ),
+        ImportError::TooLarge(width, height) | ImportError::Memory(width, height) => tr!(
+            "Its {width} × {height} pixels are too many to look at. Make a smaller copy of it.",
+            width,
+            height
+        ),
+        ImportError::NotANumber(x, y) => tr!(
+            "Its pixel {x}, {y} is no number. Paint over it in the program that made it, and save it again.",
+            x,
+            y
+        ),
+        ImportError::Unsupported(_) => {
+            tr!("It is of a kind that is not read. Save it as PNG.").to_owned()
+        }
+        _ => tr!("It is damaged, or no PNG, JPEG, TIFF, OpenEXR or OpenRaster. Take another copy.")
+            .to_owned(),
     }
 }
 
@@ -127,7 +124,7 @@ pub(crate) enum Pinned {
     #[default]
     Nothing,
     /// It is being read.
-    Coming(PathBuf, BackgroundTask<Result<Picture, String>>),
+    Coming(PathBuf, BackgroundTask<Result<Picture, ImportError>>),
     /// It is here.
     Here(PathBuf, Picture, TextureHandle),
     /// It cannot be shown, and why.
@@ -164,7 +161,7 @@ impl Pinned {
         let path = std::mem::take(path);
         *self = match found {
             Some(Ok(picture)) => Self::here(context, &path, picture),
-            Some(Err(words)) => Self::Failed(path, words),
+            Some(Err(error)) => Self::Failed(path, unread(&error)),
             None => Self::Failed(
                 path,
                 tr!("It is damaged. Take another copy of it.").to_owned(),
@@ -239,13 +236,19 @@ mod tests {
             .expect("written");
         drop(writer);
         std::fs::write(&path, &huge).expect("written");
-        let words = Picture::read(&path).expect_err("too large");
-        assert!(words.contains("30000 × 30000 pixels"), "{words}");
-        assert!(!words.contains('\n'));
+        let error = Picture::read(&path).expect_err("too large");
+        let is_too_large = matches!(
+            error,
+            ImportError::TooLarge(30_000, 30_000) | ImportError::Memory(30_000, 30_000)
+        );
+        assert!(is_too_large, "{error}");
         std::fs::write(&path, &bytes[..bytes.len() / 2]).expect("written");
-        let words = Picture::read(&path).expect_err("damaged");
-        assert!(words.contains("damaged"), "{words}");
-        let words = Picture::read(&folder.path().join("none.png")).expect_err("none");
-        assert!(words.starts_with("It cannot be read"), "{words}");
+        let error = Picture::read(&path).expect_err("damaged");
+        assert!(
+            !matches!(error, ImportError::File(_) | ImportError::TooLarge(..)),
+            "{error}"
+        );
+        let none = Picture::read(&folder.path().join("none.png"));
+        assert!(matches!(none, Err(ImportError::File(_))));
     }
 }

@@ -2,9 +2,17 @@
 
 use std::path::PathBuf;
 
+use maulstick_types::quantity;
+use maulstick_types::values::Quantity;
 use serde::{Deserialize, Serialize};
 
 use super::LEAST;
+
+quantity! {
+    /// Opacity of the picture's frame.
+    pub(crate) FrameOpacity: "opacity", 0.1..=1.0, Self::RANGE, "",
+    tr_noop!("How much of the desk the picture hides")
+}
 
 /// Settings of the reference picture that are remembered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,7 +26,7 @@ pub struct ReferencePreferences {
     pub place: [f32; 2],
     /// Width and height of the frame's inside, points.
     pub size: [f32; 2],
-    /// Opacity, .1 to 1.
+    /// A [`FrameOpacity`].
     pub opacity: f32,
     /// True to search among all paints, false among those of the palette.
     pub all_paints: bool,
@@ -48,7 +56,12 @@ impl ReferencePreferences {
         Self {
             place: [0, 1].map(|i| within(self.place[i], 0.0, 20_000.0, usual.place[i])),
             size: [0, 1].map(|i| within(self.size[i], LEAST[i], 20_000.0, usual.size[i])),
-            opacity: within(self.opacity, 0.1, 1.0, usual.opacity),
+            opacity: within(
+                self.opacity,
+                *FrameOpacity::RANGE.start() as f32,
+                *FrameOpacity::RANGE.end() as f32,
+                usual.opacity,
+            ),
             ..self.clone()
         }
     }

@@ -75,17 +75,7 @@ impl Backdrop {
             .iter()
             .fold(PixelRect::NOTHING, |all, laid| all.with(&laid.changed));
         if !self.drawn.as_ref().is_some_and(same) {
-            let usage =
-                wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
-            let texture = gpu.texture("backdrop", size.map(|n| n.max(1)), gpu.target, usage);
-            let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-            let resource = wgpu::BindingResource::TextureView(&view);
-            self.drawn = Some(Drawn {
-                size,
-                surfaces: laid.len(),
-                bound: gpu.bind(&self.layout, &[resource]),
-                view,
-            });
+            self.drawn = Some(self.bare(gpu, size, laid.len()));
             changed = PixelRect::EVERYTHING;
         }
         let (Some(drawn), Some((from, extent))) = (&self.drawn, changed.within(size)) else {
@@ -119,6 +109,20 @@ impl Backdrop {
         }
         gpu.queue.submit([encoder.finish()]);
         u64::from(extent[0]) * u64::from(extent[1])
+    }
+
+    /// The picture before anything is drawn in it.
+    fn bare(&self, gpu: &Gpu, size: [u32; 2], surfaces: usize) -> Drawn {
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        let texture = gpu.texture("backdrop", size.map(|n| n.max(1)), gpu.target, usage);
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let resource = wgpu::BindingResource::TextureView(&view);
+        Drawn {
+            size,
+            surfaces,
+            bound: gpu.bind(&self.layout, &[resource]),
+            view,
+        }
     }
 
     /// A shape of the window that fills the view; `None` before there is a surface.

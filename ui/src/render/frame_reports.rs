@@ -18,7 +18,7 @@ const ASK: Duration = Duration::from_millis(1);
 
 /// Brush states that a picture of a surface shows.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Holding {
+pub(crate) struct Holding {
     /// The journal entries below this index.
     pub journal: u64,
     /// The brush states.

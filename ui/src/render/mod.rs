@@ -5,8 +5,6 @@
 //! | `gpu` | the graphics device |
 //! | `device_loss` | recovery from a lost graphics device |
 //! | `scene` | the desk in the window |
-//! | [`frames`] | threads that pull frames from the paint node |
-//! | [`tile_planner`] | the tiles to ask for next |
 //! | `tile_atlas` | the tiles of a surface as a toroidal texture atlas |
 //! | [`surface`] | a surface on the graphics device |
 //! | `light_surface`, [`show_surface`] | its passes: lighting, and drawing into the view |
@@ -21,13 +19,13 @@ pub mod backdrop;
 pub mod brush;
 pub(crate) mod device_loss;
 pub(crate) mod frame_reports;
-pub mod frames;
 pub(crate) mod gpu;
 pub(crate) mod light_surface;
 pub mod offscreen;
 pub(crate) mod scene;
 pub mod show_surface;
 pub mod surface;
+#[cfg(test)]
+mod texels_tests;
 pub(crate) mod tile_atlas;
-pub mod tile_planner;
 pub(crate) mod view_light;

@@ -17,17 +17,30 @@ pub struct Offscreen {
     size: [u32; 2],
 }
 
+/// A picture that cannot be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum OffscreenError {
+    /// No driver.
+    #[error("no Vulkan driver: {0}")]
+    Driver(#[from] wgpu::RequestAdapterError),
+    /// No device.
+    #[error("no graphics device: {0}")]
+    Device(#[from] wgpu::RequestDeviceError),
+    /// The device is lost.
+    #[error("the graphics device is lost: {0}")]
+    Lost(#[from] wgpu::PollError),
+}
+
 impl Offscreen {
     /// A picture of `size` pixels.
     ///
     /// # Errors
-    /// In words, where there is no Vulkan driver or it gives no device.
-    pub fn new(size: [u32; 2]) -> Result<Self, String> {
+    /// [`OffscreenError`] where there is no Vulkan driver or it gives no device.
+    pub fn new(size: [u32; 2]) -> Result<Self, OffscreenError> {
         let mut instance = wgpu::InstanceDescriptor::new_without_display_handle();
         instance.backends = wgpu::Backends::VULKAN;
         let instance = wgpu::Instance::new(instance);
-        let adapter = pollster::block_on(instance.request_adapter(&Default::default()))
-            .map_err(|error| format!("no Vulkan driver: {error}"))?;
+        let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
         let limits = wgpu::Limits {
             max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
             ..wgpu::Limits::default()
@@ -36,8 +49,7 @@ impl Offscreen {
             required_limits: limits,
             ..Default::default()
         };
-        let (device, queue) = pollster::block_on(adapter.request_device(&asked))
-            .map_err(|error| format!("no graphics device: {error}"))?;
+        let (device, queue) = pollster::block_on(adapter.request_device(&asked))?;
         // As most windows, it encodes by itself as little as possible.
         let format = wgpu::TextureFormat::Rgba8Unorm;
         let gpu = Gpu {
@@ -79,8 +91,8 @@ impl Offscreen {
     /// Draws shapes over a bare desk and waits until they are drawn.
     ///
     /// # Errors
-    /// In words, where the device is lost.
-    pub fn draw(&mut self, shapes: Vec<Shape>) -> Result<(), String> {
+    /// [`OffscreenError`] where the device is lost.
+    pub fn draw(&mut self, shapes: Vec<Shape>) -> Result<(), OffscreenError> {
         let area = self.area();
         let input = eframe::egui::RawInput {
             screen_rect: Some(area),
@@ -131,7 +143,7 @@ impl Offscreen {
         device
             .poll(wgpu::PollType::wait_indefinitely())
             .map(drop)
-            .map_err(|error| format!("the graphics device is lost: {error}"))
+            .map_err(OffscreenError::from)
     }
 
     /// Target texture.

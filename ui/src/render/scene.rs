@@ -17,7 +17,6 @@ use maulstick_types::{Origin, name_hash};
 use crate::render::backdrop::Backdrop;
 use crate::render::brush::renderer::{Below, BrushRenderer};
 use crate::render::frame_reports::{Completion, Holding};
-use crate::render::frames::{FrameInbox, FrameSource, pull};
 use crate::render::gpu::Gpu;
 use crate::render::show_surface::PixelRect;
 use crate::render::surface::{Laid, Passes, SurfaceView};
@@ -25,7 +24,9 @@ use crate::rig::brushes::BrushTracker;
 use crate::rig::state::RigState;
 use crate::tracing::projection::{Projector, Slide};
 use crate::view::camera::View;
-use crate::view::visible_tiles::Wanted;
+use crate::view::visible_tiles::wanted_by;
+use maulstick_client::frames::tiles::Wanted;
+use maulstick_client::frames::{FrameInbox, FrameSource, pull};
 use maulstick_client::state::RigEvent;
 
 /// The window is drawn anew at most this often for frames and samples, of which a device sends up to
@@ -164,7 +165,10 @@ impl SceneRenderer {
         for (layer, id) in self.surfaces.iter_mut().zip(SURFACES) {
             for shown in layer.inbox.take() {
                 if id == CANVAS && !shown.holds.is_empty() {
-                    self.holding = shown.holding();
+                    self.holding = Holding {
+                        journal: shown.journal,
+                        holds: shown.holds.clone(),
+                    };
                 }
                 layer.view.update(&painter.gpu, &painter.passes, &shown);
             }
@@ -197,7 +201,7 @@ impl SceneRenderer {
             };
             let wanted = Wanted {
                 wet: id == CANVAS && rig.show_wet,
-                ..Wanted::of(surface, view, pixels_per_point)
+                ..wanted_by(surface, view, pixels_per_point)
             };
             layer.inbox.want(wanted);
             let (gpu, passes) = (&painter.gpu, &painter.passes);

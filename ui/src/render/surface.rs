@@ -6,13 +6,13 @@ use maulstick_optics::gamut::Gamut;
 use maulstick_optics::light::Lamp;
 use maulstick_types::scene::Surface;
 
-use crate::render::frames::Shown;
 use crate::render::gpu::Gpu;
 use crate::render::light_surface::LightSurface;
 use crate::render::show_surface::{PixelRect, Place, Region, ShowSurface};
 use crate::render::tile_atlas::TileAtlas;
-use crate::render::tile_planner::Part;
 use crate::view::camera::View;
+use maulstick_client::frames::Shown;
+use maulstick_client::frames::tile_planner::Part;
 
 /// The passes that a surface goes through.
 #[derive(Debug)]
@@ -204,11 +204,11 @@ pub(crate) mod tests {
     use maulstick_types::paint::TILE;
 
     use super::*;
-    use crate::render::frames::{ShownTile, texels};
     use crate::render::gpu::testing::{draw, gpu, read, target};
-    use crate::render::tile_planner::AtlasState;
     use crate::view::camera::corners;
-    use crate::view::visible_tiles::TileRect;
+    use maulstick_client::frames::tile_planner::AtlasState;
+    use maulstick_client::frames::tiles::TileRect;
+    use maulstick_client::frames::{ShownTile, texels};
 
     pub(crate) const CELLS: [u32; 2] = [150, 100];
 

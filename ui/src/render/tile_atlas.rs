@@ -4,18 +4,19 @@
 //! Row 0 is the lowest.
 
 use eframe::egui_wgpu::wgpu;
+use maulstick_client::frames::tile_planner::AtlasState;
+use maulstick_client::frames::tiles::TileRect;
+use maulstick_client::frames::{Shown, ShownTile};
 use maulstick_optics::light::shadow::REACH;
 use maulstick_optics::light::{Lamp, Surroundings};
 use maulstick_types::paint::TILE;
 
-use crate::render::frames::{Shown, ShownTile};
 use crate::render::gpu::Gpu;
 use crate::render::light_surface::{
     COLOUR, CellRect, HEIGHT, LIT, LampUniform, LightSurface, WindowUniform, joined,
 };
 use crate::render::show_surface::Region;
-use crate::render::tile_planner::AtlasState;
-use crate::view::visible_tiles::TileRect;
+use crate::view::visible_tiles::cells_of;
 
 /// Number of changed areas from which the whole atlas is lit at once.
 const MANY: usize = 64;
@@ -135,7 +136,7 @@ impl TileAtlas {
             self.put(gpu, tile);
         }
         for part in self.state.held.without(&before) {
-            self.stale.push(part.cells(self.cells));
+            self.stale.push(cells_of(&part, self.cells));
         }
     }
 
@@ -147,7 +148,7 @@ impl TileAtlas {
             from: [tile.x, tile.y],
             to: [tile.x.saturating_add(1), tile.y.saturating_add(1)],
         };
-        let area = place.cells(self.cells);
+        let area = cells_of(&place, self.cells);
         if area.size.contains(&0) {
             return;
         }
@@ -186,7 +187,7 @@ impl TileAtlas {
     /// Lights what is stale; everything where the lamp is another. `cell_m` is the side of a cell of
     /// the surface.
     pub(crate) fn light(&mut self, gpu: &Gpu, pass: &LightSurface, lamp: &Lamp, cell_m: f64) {
-        let held = self.state.held.cells(self.cells);
+        let held = cells_of(&self.state.held, self.cells);
         let Some(unlit) = self.unlit.as_mut().filter(|_| !held.size.contains(&0)) else {
             return;
         };
@@ -235,7 +236,7 @@ impl TileAtlas {
     /// The cells that may be shown, for a surface of `surface_cells`.
     #[must_use]
     pub(crate) fn region(&self, surface_cells: [u32; 2]) -> Region {
-        let held = self.state.held.cells(self.cells);
+        let held = cells_of(&self.state.held, self.cells);
         let coarse = 1.0 / (1u64 << self.state.level.min(31)) as f32;
         let (mut low, mut high) = ([0.0; 2], [0.0; 2]);
         for i in 0..2 {

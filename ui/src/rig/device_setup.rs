@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, channel};
 use std::task::Poll;
-use std::time::SystemTime;
+use std::time::{Duration, Instant, SystemTime};
 
 use eframe::egui::Context;
 use maulstick_device::node_watch::NodeWatch;
@@ -29,6 +29,8 @@ pub(crate) use words::fit_event;
 
 /// Folders that change where a device is plugged in or out.
 const NODES: [&str; 2] = ["/dev", "/dev/input"];
+/// Longest wait for a fit or a change when the window ends.
+const LONGEST_END: Duration = Duration::from_millis(800);
 /// Time between two looks while a device lacks a permission, s, where the system does not tell that it has one.
 const LOOK_S: f64 = 3.0;
 
@@ -87,9 +89,9 @@ struct Fit {
     task: BackgroundTask<Result<FitEnd, UserError>>,
 }
 
-impl Drop for Fit {
+impl Drop for DeviceSetupRunner {
     fn drop(&mut self) {
-        self.stop.request();
+        self.end();
     }
 }
 
@@ -166,6 +168,21 @@ impl DeviceSetupRunner {
         rig.setup.is_changing = self.running.is_some() || !self.waiting.is_empty() || is_behind;
     }
 
+    /// Stops a fit, so that the device is put back, and waits for the change that is being made: not longer than
+    /// [`LONGEST_END`]. Those that wait are not begun.
+    pub(crate) fn end(&mut self) {
+        self.waiting.clear();
+        let until = Instant::now() + LONGEST_END;
+        let is_fit_over = self.fit.take().is_none_or(|fit| {
+            fit.stop.request();
+            fit.task.wait(until)
+        });
+        let is_changed = self.running.take().is_none_or(|task| task.wait(until));
+        if !is_fit_over || !is_changed {
+            tracing::warn!("the set-up of a device is not done as the window ends");
+        }
+    }
+
     /// Tells of the change that has ended, and begins the next.
     fn poll_changes(&mut self, context: &Context, rig: &str, notifications: &mut Notifications) {
         if let Some(Poll::Ready(ended)) = self.running.as_ref().map(BackgroundTask::poll) {
@@ -214,6 +231,7 @@ impl DeviceSetupRunner {
     }
 
     fn begin_fit(&mut self, context: &Context, device: String, rig: &mut RigState) {
+        self.fit.iter().for_each(|fit| fit.stop.request());
         let (to_window, events) = channel();
         let (stop, fit) = (Stop::default(), self.functions.fit);
         let (name, ends) = (rig.live.name.clone(), stop.clone());

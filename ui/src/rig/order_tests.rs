@@ -195,6 +195,18 @@ impl Studio {
             };
             self.queues.entry(node).or_default().push_back(sending);
         }
+        self.send_first(now_ns);
+        let queued = self
+            .queues
+            .values()
+            .flatten()
+            .map(|sending| sending.asked_ns);
+        let oldest = queued.chain(self.barrier.oldest_ns()).min();
+        self.pending.send(now_ns, oldest).expect("told");
+    }
+
+    /// Sends the first request of each queue, and takes the answers.
+    fn send_first(&mut self, now_ns: u64) {
         for (node, queue) in &mut self.queues {
             let Some(first) = queue.front_mut() else {
                 continue;
@@ -231,13 +243,6 @@ impl Studio {
                 None => {}
             }
         }
-        let queued = self
-            .queues
-            .values()
-            .flatten()
-            .map(|sending| sending.asked_ns);
-        let oldest = queued.chain(self.barrier.oldest_ns()).min();
-        self.pending.send(now_ns, oldest).expect("told");
     }
 
     fn sample(&mut self, x_mm: f64, y_mm: f64, pressure: f64) {

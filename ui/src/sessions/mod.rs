@@ -26,6 +26,7 @@ use maulstick_ui_kit::notifications::Notifications;
 use tokio::runtime::{Builder, Runtime};
 use tokio::time::timeout;
 
+use crate::dialogs::paths;
 use crate::rig::state::RigState;
 use crate::sessions::cut_off::CutOffRecordings;
 
@@ -85,7 +86,7 @@ impl Sessions {
         (rig, notifications): (&mut RigState, &mut Notifications),
     ) {
         for order in orders {
-            if let Err(error) = self.carry_out(order, rig) {
+            if let Err(error) = self.carry_out(order, rig, notifications) {
                 notifications.fault(
                     tr!("Recorder and player cannot be started: {error}", error),
                     tr!("Start the rig again."),
@@ -106,8 +107,26 @@ impl Sessions {
         }
     }
 
-    fn carry_out(&mut self, order: SessionOrder, rig: &mut RigState) -> std::io::Result<()> {
+    fn carry_out(
+        &mut self,
+        order: SessionOrder,
+        rig: &mut RigState,
+        notifications: &mut Notifications,
+    ) -> std::io::Result<()> {
+        let is_playing = self.player.is_some();
         match order {
+            SessionOrder::Play {
+                recording: file, ..
+            }
+            | SessionOrder::PutDown { take: file, .. }
+                if is_playing =>
+            {
+                let name = paths::name(&file);
+                notifications.fault(
+                    tr!("{name} is not played: another replay is in progress.", name),
+                    tr!("End that one first."),
+                );
+            }
             SessionOrder::Record if self.recorder.is_none() => {
                 self.recorder = Some(recorder::start(self.runtime()?, rig));
             }
@@ -136,9 +155,7 @@ impl Sessions {
     }
 
     fn play(&mut self, settings: ReplaySettings, rig: &mut RigState) -> std::io::Result<()> {
-        if self.player.is_none() {
-            self.player = Some(player::start(self.runtime()?, settings, rig));
-        }
+        self.player = Some(player::start(self.runtime()?, settings, rig));
         Ok(())
     }
 

@@ -88,6 +88,16 @@ pub(super) fn notify(event: &RecorderEvent, notifications: &mut Notifications) {
                 tr!("Once the painting is in a file, it can from there on."),
             );
         }
+        RecorderEvent::FileEnded(summary) if summary.lacks_painting => {
+            let file = paths::shown(&summary.file);
+            notifications.fault(
+                tr!(
+                    "The recording {file} cannot be painted again: it lacks the painting.",
+                    file
+                ),
+                tr!("Keep the painting in a file before you record."),
+            );
+        }
         RecorderEvent::Begun { .. }
         | RecorderEvent::Continued { .. }
         | RecorderEvent::PaintingAttached { .. }

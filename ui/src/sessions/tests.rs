@@ -8,7 +8,9 @@ use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use maulstick_device::player::Rate;
-use maulstick_recorder::{Continuation, CopyTrouble, Position, RecorderEvent, ReplayReport};
+use maulstick_recorder::{
+    Continuation, CopyTrouble, FileSummary, Position, RecorderEvent, ReplayReport,
+};
 use maulstick_ui_kit::notifications::Severity;
 
 use super::*;
@@ -125,6 +127,35 @@ fn a_recording_stands_beside_the_painting_and_its_failure_is_shown() {
     assert_eq!(desk.shown[0].0, Severity::Fault);
 }
 
+fn summary(file: &str, lacks_painting: bool) -> FileSummary {
+    FileSummary {
+        file: file.into(),
+        messages: 9,
+        seconds: 1.0,
+        bytes: 900,
+        lost: 0,
+        dropped: 0,
+        lacks_painting,
+    }
+}
+
+#[test]
+fn a_replay_beside_another_is_refused_in_words() {
+    let mut desk = Desk::new("Sea.maul");
+    let play = |name: &str| SessionOrder::Play {
+        recording: desk.folder.path().join(name),
+        forget: false,
+    };
+    let orders = vec![play("first.mcap"), play("second.mcap")];
+    desk.poll(orders);
+    let is_refusal = |(severity, what): &(Severity, String)| {
+        *severity == Severity::Fault && what.contains("second.mcap")
+    };
+    assert!(desk.shown.iter().any(is_refusal), "{:?}", desk.shown);
+    let replay = desk.rig.replay.as_ref().expect("the first one plays");
+    assert!(replay.recording.ends_with("first.mcap"));
+}
+
 #[test]
 fn what_a_recording_lacks_and_where_it_goes_on_is_shown() {
     let mut notifications = Notifications::default();
@@ -139,13 +170,19 @@ fn what_a_recording_lacks_and_where_it_goes_on_is_shown() {
             file: "/x-2".into(),
             cause: Continuation::JournalBroke,
         },
+        RecorderEvent::FileEnded(summary("/x-2", false)),
+        RecorderEvent::FileEnded(summary("/x-3", true)),
     ] {
         notify(&event, &mut notifications);
     }
     let shown = shown(&notifications);
     let severities: Vec<Severity> = shown.iter().map(|(severity, _)| *severity).collect();
-    assert_eq!(severities, [Severity::Fault, Severity::Note]);
+    assert_eq!(
+        severities,
+        [Severity::Fault, Severity::Note, Severity::Fault]
+    );
     assert!(shown[1].1.contains("/x-2"), "{shown:?}");
+    assert!(shown[2].1.contains("/x-3"), "{shown:?}");
 }
 
 #[test]

@@ -1,11 +1,13 @@
 //! Load of a brush: a paint or mixture, another one beside it, and thinner in both.
 
 use maulstick_optics::{PaintLibrary, THINNER, thinned};
-use maulstick_painting::edits::Load;
 use maulstick_rig::UserError;
 use maulstick_types::Mixture;
-use maulstick_types::values::{BrushName, ThinnerShare};
+use maulstick_types::command::Command;
+use maulstick_types::values::ThinnerShare;
 use serde::{Deserialize, Serialize};
+
+use crate::panels::desk_edits;
 
 /// Load of a brush.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -34,18 +36,15 @@ impl BrushLoad {
         ThinnerShare::new(self.thinner.clamp(0.0, most)).unwrap_or_default()
     }
 
-    /// The edit that loads a brush so.
+    /// The command that loads a brush so.
     ///
     /// # Errors
     /// A [`UserError`] that quotes what is no mixture of the paints.
-    pub fn edit(&self, brush: &str, library: &PaintLibrary) -> Result<Load, UserError> {
+    pub fn command(&self, brush: &str, library: &PaintLibrary) -> Result<Command, UserError> {
+        let mixture = self.mixture(&self.paint, library)?;
         let beside = self.beside.as_ref();
         let beside = beside.map(|other| self.mixture(other, library));
-        Ok(Load {
-            mixture: self.mixture(&self.paint, library)?,
-            beside: beside.transpose()?,
-            brush: BrushName::new(brush)?,
-        })
+        Ok(desk_edits::load(brush, mixture, beside.transpose()?)?)
     }
 }
 
@@ -142,26 +141,18 @@ mod tests {
 
     #[test]
     fn a_load_is_one_mixture_or_two_and_thinned() {
-        let edit = |loading: BrushLoad| loading.edit("main", &library());
-        let pure = edit(loading("cobalt blue", None, 0.0)).expect("a paint");
-        assert_eq!(
-            pure,
-            Load {
-                mixture: Mixture::pure("Cobalt Blue"),
-                beside: None,
-                brush: BrushName::main()
-            }
-        );
-        let two = edit(loading(
+        let loaded = |loading: BrushLoad| {
+            let command = loading.command("main", &library()).expect("paints");
+            desk_edits::loaded(&command).expect("a load")
+        };
+        let pure = loaded(loading("cobalt blue", None, 0.0));
+        let expected = ("main".to_owned(), Mixture::pure("Cobalt Blue"), None);
+        assert_eq!(pure, expected);
+        let (_, left, beside) = loaded(loading(
             "Cobalt Blue=0.5,Thinner=0.5",
             Some("Bone Black"),
             0.5,
         ));
-        let Load {
-            mixture: left,
-            beside,
-            ..
-        } = two.expect("two");
         let right = beside.expect("two halves");
         assert_eq!(left.to_string(), "Cobalt Blue=0.25,Thinner=0.75");
         assert_eq!(right.to_string(), "Bone Black=0.5,Thinner=0.5");
@@ -173,14 +164,14 @@ mod tests {
     #[test]
     fn what_is_no_mixture_is_told_with_help() {
         let error = |paint: &str| {
-            let fault = loading(paint, None, 0.0).edit("main", &library());
-            fault.expect_err(paint).to_string()
+            let fault = loading(paint, None, 0.0).command("main", &library());
+            fault.expect_err(paint)
         };
-        assert!(error("Colbat Blue").contains("'Cobalt Blue'"));
-        assert!(error("Cobalt Blue=0").contains("not a number above 0"));
-        assert!(error("").contains("at least one paint"));
+        for wrong in ["Colbat Blue", "Cobalt Blue=0", ""] {
+            assert!(error(wrong).help.is_some(), "{wrong}");
+        }
         let beside = loading("Cobalt Blue", Some("x=1"), f64::NAN);
-        assert!(beside.edit("main", &library()).is_err());
+        assert!(beside.command("main", &library()).is_err());
     }
 
     #[test]

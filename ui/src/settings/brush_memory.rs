@@ -140,16 +140,17 @@ impl Known {
 /// # Errors
 /// A [`UserError`] where that is no brush, as after an edit of the preferences by hand.
 fn restore(held: &Preset, work: &mut PanelContext<'_>) -> Result<(), UserError> {
-    let (file, (tune, handle)) = (held.brush()?, held.edits(work.rig.brush_name())?);
     let (name, scene) = (work.rig.brush_name(), work.rig.live.scene.as_ref());
+    let (file, [tune, handle]) = (held.brush()?, held.edits(name)?);
+    let (tuning, handling) = (held.tuning(name), held.handling(name)?);
     let tuned = scene.is_some_and(|scene| scene.tunings.iter().any(|own| own.brush == name));
     let handled = scene.is_some_and(|scene| scene.handlings.iter().any(|own| own.brush == name));
     let usual = (work.rig.tuning(), work.rig.handling());
     work.take_up(file);
-    if !tuned && usual.0 != Tuning::from(tune.clone()) {
+    if !tuned && usual.0 != tuning {
         work.requests.send(tune);
     }
-    if !handled && usual.1 != BrushHandling::from(handle.clone()) {
+    if !handled && usual.1 != handling {
         work.requests.send(handle);
     }
     Ok(())

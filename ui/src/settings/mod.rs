@@ -8,14 +8,12 @@
 //! | `presets` | brushes with their paint, by name |
 //! | `brush_memory` | the brush in the hand, from session to session |
 //! | `paint_sets` | sets of paints for the palette |
-//! | `grip` | how the mouse holds the brush |
 //! | `brush_library` | the library's brushes |
 //! | `brush_load` | the mixtures that a brush takes up |
 
 pub(crate) mod brush_library;
 pub(crate) mod brush_load;
 pub(crate) mod brush_memory;
-pub mod grip;
 pub mod look;
 pub(crate) mod paint_sets;
 pub mod preferences;

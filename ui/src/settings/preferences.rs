@@ -14,12 +14,12 @@ use maulstick_ui_kit::units::Units;
 use crate::input::keymap::Keymap;
 use crate::reference::settings::ReferencePreferences;
 use crate::settings::brush_load::BrushLoad;
-use crate::settings::grip::Grip;
 use crate::settings::look::{TEXT_SIZES, Theme};
 use crate::settings::paint_sets::PaintSet;
 use crate::settings::presets::{BeforePreset, Preset, classic};
 use crate::settings::window_side::WindowSide;
 use crate::tracing::settings::Tracings;
+use maulstick_window_pen::mouse::grip::Grip;
 
 /// Recent paintings that are remembered.
 const RECENT: usize = 12;

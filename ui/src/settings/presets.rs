@@ -1,12 +1,13 @@
 //! Presets: brushes with their paint, by name.
 
 use maulstick_brush::BrushFile;
-use maulstick_painting::edits::{Handle, Tune};
 use maulstick_rig::UserError;
+use maulstick_types::command::Command;
 use maulstick_types::scene::{BrushHandling, MARKER_FLOW, Tuning};
 use maulstick_ui_kit::units::Units;
 use serde::{Deserialize, Serialize};
 
+use crate::panels::desk_edits;
 use crate::settings::brush_library::{called, of_library};
 use crate::settings::brush_load::BrushLoad;
 
@@ -160,51 +161,78 @@ impl Preset {
             .map_err(|error| wrong(error.to_string()))
     }
 
-    /// The edits that use a brush of the rig so.
-    ///
-    /// # Errors
-    /// A [`UserError`] where a number is out of range, or there is no such mode.
-    pub(crate) fn edits(&self, brush: &str) -> Result<(Tune, Handle), UserError> {
-        let mode = self.mode.parse()?;
-        let tuning = Tuning {
+    /// Stiffness and wetness that it gives a brush of the rig.
+    #[must_use]
+    pub(crate) fn tuning(&self, brush: &str) -> Tuning {
+        Tuning {
             brush: brush.to_owned(),
             stiffness: self.stiffness,
             wetness: self.wetness,
-        };
-        let handling = BrushHandling {
-            mode,
+        }
+    }
+
+    /// Use that it makes of a brush of the rig.
+    ///
+    /// # Errors
+    /// A [`UserError`] where there is no such mode.
+    pub(crate) fn handling(&self, brush: &str) -> Result<BrushHandling, UserError> {
+        Ok(BrushHandling {
+            mode: self.mode.parse()?,
             flow: self.flow,
             most_m: self.most_m,
             ..BrushHandling::normal(brush)
-        };
-        Ok((Tune::try_from(&tuning)?, Handle::try_from(&handling)?))
+        })
+    }
+
+    /// The commands that use a brush of the rig so.
+    ///
+    /// # Errors
+    /// A [`UserError`] where a number is out of range, or there is no such mode.
+    pub(crate) fn edits(&self, brush: &str) -> Result<[Command; 2], UserError> {
+        let tune = desk_edits::tune(&self.tuning(brush))?;
+        Ok([tune, desk_edits::handle(&self.handling(brush)?)?])
     }
 }
 
 /// Checks a name against the existing ones.
 ///
 /// # Errors
-/// Error and advice in words.
+/// [`NameFault`].
 pub(crate) fn check_name<'a>(
     name: &str,
     mut others: impl Iterator<Item = &'a str>,
-) -> Result<(), String> {
+) -> Result<(), NameFault> {
     let length = name.chars().count();
     if length == 0 {
-        return Err(tr!("Give it a name first.").to_owned());
+        Err(NameFault::Empty)
+    } else if length > NAME_MAX || name.contains(char::is_control) {
+        Err(NameFault::Unfit)
+    } else if others.any(|other| other == name) {
+        Err(NameFault::Taken(name.to_owned()))
+    } else {
+        Ok(())
     }
-    if length > NAME_MAX || name.contains(char::is_control) {
-        return Err(tr!(
-            "Choose a name of at most {most} letters.",
-            most = NAME_MAX
-        ));
-    }
-    match others.any(|other| other == name) {
-        true => Err(tr!(
-            "There is a '{name}' already; choose another name.",
-            name
-        )),
-        false => Ok(()),
+}
+
+/// A name that a preset or a set of paints cannot have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum NameFault {
+    /// None.
+    Empty,
+    /// Too long, or with control characters.
+    Unfit,
+    /// That of another.
+    Taken(String),
+}
+
+impl NameFault {
+    /// It and advice, in the language of the window.
+    pub(crate) fn words(&self) -> String {
+        match self {
+            Self::Empty => tr!("Give it a name first.").to_owned(),
+            Self::Unfit => tr!("Choose a name of at most {most} letters.", most = NAME_MAX),
+            Self::Taken(name) => tr!("There is a '{name}' already; choose another name.", name),
+        }
     }
 }
 

@@ -14,9 +14,10 @@ use std::sync::Arc;
 use std::task::Poll;
 
 use eframe::egui::Context;
+use maulstick_exchange::ImportError;
 use maulstick_ui_kit::background_task::BackgroundTask;
 
-use crate::reference::picture::Picture;
+use crate::reference::picture::{Picture, unread};
 use crate::widgets::context::PanelContext;
 use projection::Slide;
 use settings::Tracing;
@@ -28,7 +29,7 @@ enum Slot {
     #[default]
     Empty,
     /// It is being read.
-    Coming(PathBuf, BackgroundTask<Result<Slide, String>>),
+    Coming(PathBuf, BackgroundTask<Result<Slide, ImportError>>),
     /// It is here.
     Here(PathBuf, Arc<Slide>),
     /// It cannot be shown.
@@ -81,7 +82,7 @@ impl TracingPicture {
         {
             self.slot = match found {
                 Some(Ok(slide)) => Slot::Here(path, Arc::new(slide)),
-                Some(Err(words)) => failed(work, path, &words),
+                Some(Err(error)) => failed(work, path, &unread(&error)),
                 None => failed(work, path, tr!("It is damaged. Take another copy of it.")),
             };
         }

@@ -11,17 +11,10 @@ use crate::render::gpu::{Filterable, Gpu, Pass, UNIFORM, texture_binding};
 use crate::view::camera::View;
 
 /// A picture ready to be thrown: encoded sRGB in levels, each half as large as the one before, down to a pixel.
+#[derive(Debug)]
 pub(crate) struct Slide {
     size: [usize; 2],
     levels: Vec<(usize, Vec<[u8; 4]>)>,
-}
-
-impl std::fmt::Debug for Slide {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Slide")
-            .field("size", &self.size)
-            .finish_non_exhaustive()
-    }
 }
 
 impl Slide {

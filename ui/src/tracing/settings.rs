@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use maulstick_types::quantity;
+use maulstick_types::values::Quantity;
 use serde::{Deserialize, Serialize};
 
 /// Paintings whose pictures are remembered.
@@ -10,13 +12,19 @@ const MOST: usize = 64;
 /// Strength of a new one.
 const STRENGTH: f32 = 0.5;
 
+quantity! {
+    /// Share of the tracing picture that is seen.
+    pub(crate) TracingStrength: "strength", 0.0..=1.0, Self::RANGE, "",
+    tr_noop!("How much of the tracing picture is seen; it is neither painted nor exported")
+}
+
 /// A tracing picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Tracing {
     /// Its file.
     pub path: PathBuf,
-    /// How much of it is seen, 0 to 1.
+    /// How much of it is seen, a [`TracingStrength`].
     pub strength: f32,
     /// True while it is shown.
     pub shown: bool,
@@ -36,9 +44,10 @@ impl Tracing {
     /// Its strength, in range whatever the file of the settings says.
     #[must_use]
     pub fn sound_strength(&self) -> f32 {
-        match self.strength.is_finite() {
-            true => self.strength.clamp(0.0, 1.0),
-            false => STRENGTH,
+        if TracingStrength::check(self.strength.into()).is_ok() {
+            self.strength
+        } else {
+            STRENGTH
         }
     }
 }

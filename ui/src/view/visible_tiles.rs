@@ -2,6 +2,7 @@
 
 use eframe::egui::Pos2;
 use maulstick_brush::palette_place::size_m;
+use maulstick_client::frames::tiles::{TileRect, Wanted};
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::Surface;
 
@@ -17,109 +18,15 @@ const GROWTHS: [f32; 3] = [f32::INFINITY, 1.2, 1.0];
 /// Cells of the longer side of a base, at most.
 const BASE_CELLS: u32 = 512;
 
-/// A rectangle of tiles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TileRect {
-    /// Least column and row.
-    pub from: [u32; 2],
-    /// One past the greatest.
-    pub to: [u32; 2],
-}
-
-impl TileRect {
-    /// No tile.
-    pub const NONE: Self = Self {
-        from: [0; 2],
-        to: [0; 2],
-    };
-
-    /// The tiles from the lowest to, not with, `to`.
-    #[must_use]
-    pub const fn up_to(to: [u32; 2]) -> Self {
-        Self { from: [0; 2], to }
+/// Cells of tiles, on a surface of `cells`.
+#[must_use]
+pub fn cells_of(tiles: &TileRect, cells: [u32; 2]) -> CellRect {
+    let side = TILE as u32;
+    let at = |tile: u32, i: usize| tile.saturating_mul(side).min(cells[i]);
+    CellRect {
+        from: [0, 1].map(|i| at(tiles.from[i], i)),
+        size: [0, 1].map(|i| at(tiles.to[i], i).saturating_sub(at(tiles.from[i], i))),
     }
-
-    /// True if it holds no tile.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        (0..2).any(|i| self.from[i] >= self.to[i])
-    }
-
-    /// Columns and rows.
-    #[must_use]
-    pub fn size(&self) -> [u32; 2] {
-        [0, 1].map(|i| self.to[i].saturating_sub(self.from[i]))
-    }
-
-    /// The intersection; [`NONE`](Self::NONE) if it is empty.
-    #[must_use]
-    pub fn within(&self, other: &Self) -> Self {
-        let both = Self {
-            from: [0, 1].map(|i| self.from[i].max(other.from[i])),
-            to: [0, 1].map(|i| self.to[i].min(other.to[i])),
-        };
-        if both.is_empty() { Self::NONE } else { both }
-    }
-
-    /// True if it contains all of `other`.
-    #[must_use]
-    pub fn holds(&self, other: &Self) -> bool {
-        other.is_empty() || self.within(other) == *other
-    }
-
-    /// Its difference from `other`, in parts that do not overlap.
-    #[must_use]
-    pub fn without(&self, other: &Self) -> Vec<Self> {
-        let both = self.within(other);
-        if both.is_empty() {
-            return vec![*self];
-        }
-        let (mut rest, mut parts) = (*self, Vec::new());
-        for i in 0..2 {
-            for (from, to) in [(rest.from[i], both.from[i]), (both.to[i], rest.to[i])] {
-                let mut part = rest;
-                (part.from[i], part.to[i]) = (from, to);
-                parts.push(part);
-            }
-            (rest.from[i], rest.to[i]) = (both.from[i], both.to[i]);
-        }
-        parts.retain(|part| !part.is_empty());
-        parts
-    }
-
-    /// Its cells, on a surface of `cells`.
-    #[must_use]
-    pub fn cells(&self, cells: [u32; 2]) -> CellRect {
-        let side = TILE as u32;
-        let at = |tile: u32, i: usize| tile.saturating_mul(side).min(cells[i]);
-        CellRect {
-            from: [0, 1].map(|i| at(self.from[i], i)),
-            size: [0, 1].map(|i| at(self.to[i], i).saturating_sub(at(self.from[i], i))),
-        }
-    }
-
-    /// As a request has it.
-    #[must_use]
-    pub fn to_request(&self) -> [u32; 4] {
-        [self.from[0], self.from[1], self.to[0], self.to[1]]
-    }
-}
-
-/// Tiles that a view wants of a surface.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Wanted {
-    /// The level that the pixels ask for.
-    pub level: u32,
-    /// Its tiles that are visible, with a margin.
-    pub tiles: TileRect,
-    /// Tiles that there must be room for, whatever the view shows of the surface at this scale.
-    pub room: [u32; 2],
-    /// The level of a picture of the whole surface; `None` if `tiles` are all.
-    pub base: Option<u32>,
-    /// Tiles of the whole surface at that level.
-    pub base_tiles: [u32; 2],
-    /// True if wet paint is tinted.
-    pub wet: bool,
 }
 
 /// Tiles of a surface of `cells` at a level.
@@ -175,81 +82,68 @@ impl Part {
     }
 }
 
-impl Wanted {
-    /// Tiles that a view wants of a surface. They take no more cells than twice the pixels of the view each way, and a
-    /// margin; otherwise the level is a coarser one.
-    #[must_use]
-    pub fn of(surface: &Surface, view: &View, pixels_per_point: f32) -> Self {
-        let cells = surface.cells;
-        let last = coarsest(cells);
-        let part = Part::of(surface, view, pixels_per_point);
-        let finest = part.as_ref().map_or(last, |part| {
-            let levels = [0, 1].map(|i| level(cells[i], part.pixels[i]));
-            levels[0].min(levels[1]).min(last)
-        });
-        let most = view.pixels(pixels_per_point).map(|side| room(side as f32));
-        let most = u64::from(most[0]) * u64::from(most[1]);
-        let fits = |wanted: &Self| u64::from(wanted.room[0]) * u64::from(wanted.room[1]) <= most;
-        (finest..=last)
-            .flat_map(|level| GROWTHS.map(|growth| Self::at(cells, level, part.as_ref(), growth)))
-            .find(fits)
-            .unwrap_or_else(|| Self::whole(last, grid(cells, last)))
-    }
+/// Tiles that a view wants of a surface. They take no more cells than twice the pixels of the view each way, and a
+/// margin; otherwise the level is a coarser one.
+#[must_use]
+pub fn wanted_by(surface: &Surface, view: &View, pixels_per_point: f32) -> Wanted {
+    let cells = surface.cells;
+    let last = coarsest(cells);
+    let part = Part::of(surface, view, pixels_per_point);
+    let finest = part.as_ref().map_or(last, |part| {
+        let levels = [0, 1].map(|i| level(cells[i], part.pixels[i]));
+        levels[0].min(levels[1]).min(last)
+    });
+    let most = view.pixels(pixels_per_point).map(|side| room(side as f32));
+    let most = u64::from(most[0]) * u64::from(most[1]);
+    let fits = |wanted: &Wanted| u64::from(wanted.room[0]) * u64::from(wanted.room[1]) <= most;
+    (finest..=last)
+        .flat_map(|level| GROWTHS.map(|growth| wanted_at(cells, level, part.as_ref(), growth)))
+        .find(fits)
+        .unwrap_or_else(|| Wanted::whole(last, grid(cells, last)))
+}
 
-    /// With room for what a view takes when it takes `growth` times as many cells, but no more than
-    /// it may at this level.
-    fn at(cells: [u32; 2], level: u32, part: Option<&Part>, growth: f32) -> Self {
-        let all = grid(cells, level);
-        let Some(part) = part else {
-            return Self::whole(level, all);
-        };
-        let side = (TILE as u32) << level.min(16);
-        let extent = [0, 1].map(|i| cells[i] as f32 / side as f32);
-        let density = [0, 1].map(|i| extent[i] * TILE as f32 / part.pixels[i].max(1.0));
-        let most = CELLS_A_PIXEL / density[0].max(density[1]).max(1e-6);
-        let growth = growth.min(most).max(1.0);
-        let room = [0, 1].map(|i| {
-            let tiles = part.reach[i] * extent[i] * growth;
-            room(tiles * TILE as f32 / CELLS_A_PIXEL).min(all[i])
-        });
-        if (0..2).all(|i| all[i] <= room[i]) {
-            return Self::whole(level, all);
-        }
-        let visible = TileRect {
-            from: [0, 1].map(|i| (part.shares[0][i] * extent[i]).floor().max(0.0) as u32),
-            to: [0, 1].map(|i| (part.shares[1][i] * extent[i]).ceil().max(0.0) as u32),
-        };
-        // A surface outside the view keeps its nearest tiles.
-        let from = [0, 1].map(|i| visible.from[i].saturating_sub(MARGIN).min(all[i] - 1));
-        let tiles = TileRect {
-            from,
-            to: [0, 1].map(|i| {
-                let to = visible.to[i].saturating_add(MARGIN).min(from[i] + room[i]);
-                to.clamp(from[i] + 1, all[i])
-            }),
-        };
-        let base = (level..)
-            .find(|level| cells.iter().all(|cells| cells >> level <= BASE_CELLS))
-            .unwrap_or(level);
-        Self {
-            level,
-            tiles,
-            room,
-            base: Some(base),
-            base_tiles: grid(cells, base),
-            wet: false,
-        }
+/// With room for what a view takes when it takes `growth` times as many cells, but no more than
+/// it may at this level.
+fn wanted_at(cells: [u32; 2], level: u32, part: Option<&Part>, growth: f32) -> Wanted {
+    let all = grid(cells, level);
+    let Some(part) = part else {
+        return Wanted::whole(level, all);
+    };
+    let side = (TILE as u32) << level.min(16);
+    let extent = [0, 1].map(|i| cells[i] as f32 / side as f32);
+    let density = [0, 1].map(|i| extent[i] * TILE as f32 / part.pixels[i].max(1.0));
+    let most = CELLS_A_PIXEL / density[0].max(density[1]).max(1e-6);
+    let growth = growth.min(most).max(1.0);
+    let room = [0, 1].map(|i| {
+        let tiles = part.reach[i] * extent[i] * growth;
+        room(tiles * TILE as f32 / CELLS_A_PIXEL).min(all[i])
+    });
+    if (0..2).all(|i| all[i] <= room[i]) {
+        return Wanted::whole(level, all);
     }
-
-    fn whole(level: u32, all: [u32; 2]) -> Self {
-        Self {
-            level,
-            tiles: TileRect::up_to(all),
-            room: all,
-            base: None,
-            base_tiles: [0; 2],
-            wet: false,
-        }
+    let visible = TileRect {
+        from: [0, 1].map(|i| (part.shares[0][i] * extent[i]).floor().max(0.0) as u32),
+        to: [0, 1].map(|i| (part.shares[1][i] * extent[i]).ceil().max(0.0) as u32),
+    };
+    // A surface outside the view keeps its nearest tiles.
+    let from = [0, 1].map(|i| visible.from[i].saturating_sub(MARGIN).min(all[i] - 1));
+    let tiles = TileRect {
+        from,
+        to: [0, 1].map(|i| {
+            let to = visible.to[i].saturating_add(MARGIN).min(from[i] + room[i]);
+            to.clamp(from[i] + 1, all[i])
+        }),
+    };
+    let base = (level..)
+        .find(|level| cells.iter().all(|cells| cells >> level <= BASE_CELLS))
+        .unwrap_or(level);
+    Wanted {
+        level,
+        tiles,
+        room,
+        base: Some(base),
+        base_tiles: grid(cells, base),
+        wet: false,
     }
 }
 
@@ -313,17 +207,17 @@ mod tests {
             }
         }
         assert!(one.holds(&TileRect::NONE) && !TileRect::NONE.holds(&one));
-        let cells = rect([1, 0], [3, 2]).cells([150, 100]);
+        let cells = cells_of(&rect([1, 0], [3, 2]), [150, 100]);
         assert_eq!((cells.from, cells.size), ([64, 0], [86, 100]));
     }
 
     #[test]
     fn a_small_surface_is_wanted_whole_and_a_large_one_around_the_view() {
         let small = surface(1024);
-        let wanted = Wanted::of(&small, &view(&small, 4.0, [100.0, 100.0]), 1.0);
+        let wanted = wanted_by(&small, &view(&small, 4.0, [100.0, 100.0]), 1.0);
         assert_eq!(wanted, Wanted::whole(0, [16, 16]));
         let large = surface(4096);
-        let wanted = Wanted::of(&large, &view(&large, 1.0, [2048.0, 2048.0]), 1.0);
+        let wanted = wanted_by(&large, &view(&large, 1.0, [2048.0, 2048.0]), 1.0);
         assert_eq!(
             (wanted.level, wanted.base, wanted.base_tiles),
             (0, Some(3), [8, 8])
@@ -331,7 +225,7 @@ mod tests {
         // Cells 1408 to 2688 and 1688 to 2408, with a tile more on each side.
         assert_eq!(wanted.tiles.from, [21, 25]);
         assert_eq!(wanted.tiles.to, [43, 39]);
-        let fit = Wanted::of(&large, &view(&large, 0.17, [2048.0, 2048.0]), 1.0);
+        let fit = wanted_by(&large, &view(&large, 0.17, [2048.0, 2048.0]), 1.0);
         assert_eq!(fit, Wanted::whole(2, [16, 16]));
     }
 
@@ -350,7 +244,7 @@ mod tests {
                     };
                     for scale in [0.02, 0.26, 0.51, 0.99, 1.0, 3.0, 40.0] {
                         let view = view(&surface, scale, [0.5 * f64::from(cells); 2]);
-                        let wanted = Wanted::of(&surface, &view, 1.0);
+                        let wanted = wanted_by(&surface, &view, 1.0);
                         let what = format!("{cells} {turn} {tilt} {scale} {wanted:?}");
                         let [across, up] = wanted.room;
                         assert!(across * up <= most, "{what}");
@@ -393,11 +287,11 @@ mod tests {
     #[test]
     fn a_surface_beside_the_view_or_seen_from_its_edge_wants_little() {
         let large = surface(4096);
-        let beside = Wanted::of(&large, &view(&large, 1.0, [-9000.0, 2048.0]), 1.0);
+        let beside = wanted_by(&large, &view(&large, 1.0, [-9000.0, 2048.0]), 1.0);
         assert_eq!(beside.tiles.size()[0], 1);
         let mut edge = large;
         edge.pose.orientation = rotation(DVec3::X, std::f64::consts::FRAC_PI_2).to_array();
-        let wanted = Wanted::of(&edge, &view(&edge, 1.0, [2048.0, 2048.0]), 1.0);
+        let wanted = wanted_by(&edge, &view(&edge, 1.0, [2048.0, 2048.0]), 1.0);
         assert_eq!(wanted, Wanted::whole(6, [1, 1]));
     }
 }

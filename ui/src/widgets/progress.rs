@@ -4,11 +4,11 @@
 use std::collections::BTreeMap;
 
 use eframe::egui::{Align2, Area, Context, Frame, Id, Order, ProgressBar, Ui};
-use maulstick_painting::edits::{Relight, StopDrying};
 use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
-use maulstick_types::scene::{CANVAS, Light};
+use maulstick_types::scene::Light;
 
+use crate::panels::desk_edits;
 use crate::rig::state::RigState;
 use crate::widgets::context::PanelContext;
 use maulstick_client::request::Peer;
@@ -145,11 +145,7 @@ impl Progress {
         let begun_ns = begun_ns.copied().unwrap_or(rig.live.now_ns);
         // Otherwise a layer has another opacity.
         let is_relit = self.stood_ns.saturating_add(STOOD_NS) >= begun_ns;
-        let back = |light: &Light| {
-            let light = light.clone();
-            let expose = false;
-            Cancel::Paint(Box::new(Relight { light, expose }.into()))
-        };
+        let back = |light: &Light| Cancel::Paint(Box::new(desk_edits::relight(light.clone())));
         (status.baked < status.baking).then(|| Job {
             kind: Kind::Relighting,
             words: match is_relit {
@@ -200,7 +196,6 @@ fn drawing(rig: &RigState) -> Option<Job> {
 
 fn drying(rig: &RigState) -> Option<Job> {
     let drying = rig.live.paint.as_ref()?.status.drying.as_ref()?;
-    let stop = StopDrying { surface: CANVAS };
     Some(Job {
         kind: Kind::Drying,
         words: match drying.layer.is_empty() {
@@ -208,7 +203,7 @@ fn drying(rig: &RigState) -> Option<Job> {
             false => tr!("Drying “{layer}”", layer = drying.layer),
         },
         share: Some(f64::from(drying.share)),
-        cancel: Some(Cancel::Paint(Box::new(stop.into()))),
+        cancel: Some(Cancel::Paint(Box::new(desk_edits::stop_drying()))),
         hint: tr!("What is wet still stays wet"),
     })
 }
@@ -357,10 +352,7 @@ mod tests {
         let asked = harness.state_mut().requests.take();
         let back = Asked::Command {
             node: "paint".into(),
-            command: Command::from(Relight {
-                light: scene.light,
-                expose: false,
-            }),
+            command: desk_edits::relight(scene.light),
         };
         assert_eq!(asked, [back]);
         harness.state_mut().baked(40.0, 100);

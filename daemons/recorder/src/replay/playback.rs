@@ -1,5 +1,6 @@
 //! Playback: the transport, the orders that change it, and the reports of where it is.
 
+use std::collections::VecDeque;
 use std::time::Duration;
 
 use maulstick_bus::Wake;
@@ -17,8 +18,8 @@ pub(super) const REPORT_PERIOD: Duration = Duration::from_millis(200);
 #[derive(Debug)]
 pub(super) struct Controls {
     orders: UnboundedReceiver<Order>,
-    /// An order that came while its task waited.
-    waiting: Option<Order>,
+    /// Orders that came while its task waited.
+    waiting: VecDeque<Order>,
     reports: UnboundedSender<ReplayReport>,
 }
 
@@ -29,23 +30,31 @@ impl Controls {
     ) -> Self {
         Self {
             orders,
-            waiting: None,
+            waiting: VecDeque::new(),
             reports,
         }
     }
 
     /// The next order, if there is one.
     pub(super) fn next(&mut self) -> Option<Order> {
-        self.waiting.take().or_else(|| self.orders.try_recv().ok())
+        let waiting = self.waiting.pop_front();
+        waiting.or_else(|| self.orders.try_recv().ok())
+    }
+
+    /// True once the end was ordered; the orders before it are still to be carried out.
+    pub(super) fn is_end_ordered(&mut self) -> bool {
+        self.waiting
+            .extend(std::iter::from_fn(|| self.orders.try_recv().ok()));
+        self.waiting.contains(&Order::End)
     }
 
     /// Waits for an order, a ring of `wake`, or the end of the time.
     pub(super) async fn wait(&mut self, wake: &Wake, at_most: Duration) {
-        if self.waiting.is_some() {
+        if !self.waiting.is_empty() {
             return;
         }
         tokio::select! {
-            order = self.orders.recv(), if !self.orders.is_closed() => self.waiting = order,
+            order = self.orders.recv(), if !self.orders.is_closed() => self.waiting.extend(order),
             () = wake.ringing() => {}
             () = sleep(at_most) => {}
         }
@@ -144,5 +153,24 @@ impl Playback {
             rate: self.transport.rate(),
             paused: self.transport.is_paused(),
         }));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tokio::sync::mpsc::unbounded_channel;
+
+    use super::*;
+
+    #[test]
+    fn an_end_is_seen_before_the_orders_that_came_first_are_carried_out() {
+        let (to_player, orders) = unbounded_channel();
+        let mut controls = Controls::new(orders, unbounded_channel().0);
+        to_player.send(Order::Seek(3.0)).expect("open");
+        assert!(!controls.is_end_ordered());
+        to_player.send(Order::End).expect("open");
+        assert!(controls.is_end_ordered());
+        let all: Vec<Order> = std::iter::from_fn(|| controls.next()).collect();
+        assert_eq!(all, [Order::Seek(3.0), Order::End]);
     }
 }

@@ -1,6 +1,7 @@
 //! A session is painted again in a running rig: in a painting of its own, which is as it was at the session's beginning, what
 //! was accepted then is accepted again in the same order.
 
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -64,18 +65,27 @@ async fn paint(
         member,
         client: CommandClient::new(Arc::clone(&member.bus), &member.topics),
         painting: SessionPainting::new(path, member),
-        number: 0,
+        number: None,
         batch: 0,
         sent: Instant::now(),
     };
     let events = painter.events().await?;
-    block_in_place(|| painter.open(&playback.controls))?;
+    let opened = block_in_place(|| painter.open(&mut playback.controls));
+    if opened.is_err() && is_ended(member, &mut playback.controls) {
+        return Ok(());
+    }
+    opened?;
     let played = painter.play(&mut playback, events).await;
     let ended = block_in_place(|| painter.end());
-    if member.stop.requested() {
+    if is_ended(member, &mut playback.controls) {
         return Ok(());
     }
     played.and(ended)
+}
+
+/// True once the owner of the player, or the rig, has it end.
+fn is_ended(member: &NodeHandle, controls: &mut Controls) -> bool {
+    member.stop.requested() || controls.is_end_ordered()
 }
 
 /// Painter of a session.
@@ -85,8 +95,8 @@ struct SessionPainter<'a> {
     member: &'a NodeHandle,
     client: CommandClient,
     painting: SessionPainting,
-    /// Number of this playing, for the paint node.
-    number: u64,
+    /// Number of this playing, for the paint node; `None` while its painting is not open.
+    number: Option<u64>,
     /// Number of the next batch.
     batch: u64,
     /// Time of the newest command to the paint node.
@@ -112,7 +122,7 @@ impl SessionPainter<'_> {
                     playback.transport.rewind();
                 }
                 events = self.events().await?;
-                block_in_place(|| self.open_anew(&playback.controls))?;
+                block_in_place(|| self.open_anew(&mut playback.controls))?;
                 played_ns = 0;
                 continue;
             }
@@ -167,28 +177,30 @@ impl SessionPainter<'_> {
     }
 
     /// Has the rig go on in the painting as it was at the beginning, and the hands wait.
-    fn open(&mut self, controls: &Controls) -> Result<(), RecorderError> {
+    fn open(&mut self, controls: &mut Controls) -> Result<(), RecorderError> {
         self.report(controls, |painting| ReplayReport::Opening { painting });
-        let stop = || self.member.stop.requested();
+        let (member, ordered) = (self.member, RefCell::new(&mut *controls));
+        let stop = || is_ended(member, &mut ordered.borrow_mut());
         self.painting
             .open(self.session, self.settings.forget, &stop)?;
         self.begin(controls)
     }
 
     /// The same once more.
-    fn open_anew(&mut self, controls: &Controls) -> Result<(), RecorderError> {
+    fn open_anew(&mut self, controls: &mut Controls) -> Result<(), RecorderError> {
         self.end()?;
         self.report(controls, |painting| ReplayReport::Opening { painting });
+        let (member, ordered) = (self.member, RefCell::new(&mut *controls));
+        let stop = || is_ended(member, &mut ordered.borrow_mut());
         self.painting
-            .open_anew(self.session, self.settings.forget)?;
+            .open_anew(self.session, self.settings.forget, &stop)?;
         self.begin(controls)
     }
 
     fn begin(&mut self, controls: &Controls) -> Result<(), RecorderError> {
-        (self.number, self.batch) = (random_u64(), 0);
-        self.command(SessionCommand::Begin {
-            session: self.number,
-        })?;
+        let session = random_u64();
+        (self.number, self.batch) = (Some(session), 0);
+        self.command(SessionCommand::Begin { session })?;
         self.report(controls, |painting| ReplayReport::Painting { painting });
         Ok(())
     }
@@ -201,16 +213,20 @@ impl SessionPainter<'_> {
         let records =
             journal::write(batch).map_err(|error| UserError::failure(error.to_string()))?;
         self.batch += 1;
+        let Some(session) = self.number else {
+            return Ok(());
+        };
         self.command(SessionCommand::Repeat {
-            session: self.number,
+            session,
             batch: self.batch - 1,
             records: ByteBuf::from(records),
         })
     }
 
     fn end(&mut self) -> Result<(), RecorderError> {
-        self.command(SessionCommand::End {
-            session: self.number,
+        let session = self.number.take();
+        session.map_or(Ok(()), |session| {
+            self.command(SessionCommand::End { session })
         })
     }
 

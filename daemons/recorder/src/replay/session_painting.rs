@@ -81,6 +81,7 @@ impl SessionPainting {
         &mut self,
         session: &SessionFile,
         forget: bool,
+        stop: &dyn Fn() -> bool,
     ) -> Result<(), RecorderError> {
         let failed = |error: std::io::Error| UserError::writing(&self.path, &error);
         let folder = self.path.parent();
@@ -88,11 +89,10 @@ impl SessionPainting {
         let folder = tempfile::tempdir_in(folder.unwrap_or(Path::new("."))).map_err(failed)?;
         // While the rig may be in it, it stays.
         let folder = folder.keep();
-        let never = || false;
         let between = folder.join(PAINTING);
-        go_on_in(&mut self.rig, session, (&between, false), &never)?;
+        go_on_in(&mut self.rig, session, (&between, false), stop)?;
         std::fs::remove_file(&self.path).map_err(failed)?;
-        self.open(session, forget, &never)?;
+        self.open(session, forget, stop)?;
         std::fs::remove_dir_all(&folder).map_err(|error| UserError::writing(&folder, &error))?;
         Ok(())
     }

@@ -8,6 +8,7 @@ use maulstick_rig::config::DeviceSection;
 use maulstick_rig::{UserError, asker};
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::stylus::{StylusInfo, axes};
+use maulstick_types::values::{ForceShare, Quantity};
 
 use crate::commands::client::{Client, Target};
 use crate::commands::option_error::OptionError;
@@ -81,7 +82,7 @@ fn share(text: &str) -> Result<f64, OptionError> {
         None => (text.trim(), 1.0),
     };
     let share = number.parse().ok().map(|value: f64| value * unit);
-    let good = share.filter(|share| (0.0..=1.0).contains(share));
+    let good = share.filter(|share| ForceShare::RANGE.contains(share));
     let expected = "a share from 0 to 100 %, such as 60% or 0.6";
     good.ok_or_else(|| OptionError::unexpected(text, expected))
 }

@@ -12,11 +12,12 @@ use crate::command::advice::Advice;
 pub use crate::command::detail::Detail;
 pub use crate::command::session::SessionCommand;
 use crate::edit::{Edit, EditFields};
-use crate::limits::{CELLS, CELLS_IN_ALL, CELLS_M, STAINS_M};
+use crate::limits::{CELLS, CELLS_IN_ALL};
 use crate::mixture::Mixture;
 use crate::scene::CANVAS;
 use crate::values::{
-    BrushName, BrushToml, DeviceName, DeviceToml, MaterialName, ValueError, WholePath,
+    BrushName, BrushToml, CellSide, DeviceName, DeviceToml, MaterialName, StainThickness,
+    ValueError, WholePath,
 };
 use crate::wire::define::{message, wire_enum, wire_struct};
 
@@ -94,14 +95,7 @@ impl NewCanvas {
     /// # Errors
     /// [`ValueError`].
     pub fn check(&self) -> Result<(), ValueError> {
-        if !CELLS_M.contains(&self.cell_m) {
-            return Err(ValueError::Range {
-                what: "cell",
-                value: self.cell_m * 1e3,
-                unit: " mm",
-                range: ".01 to 10",
-            });
-        }
+        CellSide::new(self.cell_m)?;
         let size_m = [self.width_m, self.height_m];
         let [width, height] = size_m.map(|side| side / self.cell_m);
         if !(CELLS.contains(&width) && CELLS.contains(&height)) {
@@ -111,16 +105,7 @@ impl NewCanvas {
         if width * height > CELLS_IN_ALL {
             return Err(ValueError::Cells(width * height));
         }
-        if STAINS_M.contains(&self.stain_m) {
-            Ok(())
-        } else {
-            Err(ValueError::Range {
-                what: "stain",
-                value: self.stain_m * 1e6,
-                unit: " µm",
-                range: "0 to 1000",
-            })
-        }
+        StainThickness::new(self.stain_m).map(drop)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Faults of a scene's numbers: a program in any language may send one.
 
 use super::{BrushHandling, Layer, PaintSlot, Scene, Surface, Tuning};
-use crate::brush::ZOOMS;
+use crate::values::{Quantity, Zoom};
 
 /// Cells of a surface each way, more than any has.
 const CELLS_MAX: u32 = 1 << 20;
@@ -30,8 +30,8 @@ impl Surface {
         let well = |well: &super::Well| finite(&well.center_m) && well.radius_m.is_finite();
         if !self.pose.is_valid() {
             Some("a surface's pose is not finite or its quaternion is not a unit one")
-        } else if !ZOOMS.contains(&self.zoom) {
-            Some("a surface's zoom is not of .01 to 100")
+        } else if Zoom::check(self.zoom).is_err() {
+            Some("a surface's zoom is out of range")
         } else if !(1e-6..=1.0).contains(&self.cell_m)
             || !self.cells.iter().all(|n| (1..=CELLS_MAX).contains(n))
         {

@@ -1,13 +1,37 @@
 //! The lamp of a scene.
 
+use crate::quantity;
+use crate::values::{OutOfRange, Quantity};
 use crate::wire::define::wire_struct;
 
-/// Factors on the light's strength and on what the eye makes of it.
-pub const INTENSITY: std::ops::RangeInclusive<f64> = 0.0..=100.0;
+quantity! {
+    /// Factor on the light's strength.
+    pub Intensity: "intensity", 0.0..=100.0, 0.1..=10.0, "",
+    "How strong the lamp is; 1 as it was built"
+}
+quantity! {
+    /// Factor of the eye, or camera, that looks at the painting.
+    pub Exposure: "exposure", 0.0..=100.0, 0.1..=10.0, "",
+    "How much of the light the eye takes"
+}
+quantity! {
+    /// Factor on the slopes of the relief.
+    pub Relief: "relief strength", 0.0..=10.0, 0.0..=5.0, "",
+    "How strongly brush marks stand out; 1 as they are, 0 flat"
+}
+quantity! {
+    /// Tangent of half the angle under which the lamp is seen.
+    pub Softness: "softness of shadows", 0.0..=1.0, Self::RANGE, "",
+    "How large the lamp is: 0 casts sharp shadows, 1 soft ones"
+}
+quantity! {
+    /// Wavelengths of the rules `gauss` and `fitted`.
+    pub Wavelengths: "number of wavelengths", 4.0..=16.0, Self::RANGE, "",
+    "Wavelengths that are computed"
+}
+
 /// Names of the sampling rules.
 pub const RULES: [&str; 3] = ["gauss", "fitted", "reference"];
-/// Wavelengths of the rules `gauss` and `fitted`.
-pub const SAMPLES: std::ops::RangeInclusive<u32> = 4..=16;
 /// The name of an illuminant has at most this many bytes.
 pub const ILLUMINANT_NAME_MAX: usize = 128;
 
@@ -33,7 +57,7 @@ wire_struct! {
         pub observer: u32,
         /// Sampling rule: `gauss`, `fitted` or `reference`.
         pub rule: String,
-        /// Wavelengths of the rule, 4 to 16; `reference` has 101.
+        /// Wavelengths of the rule; `reference` has 101.
         pub samples: u32,
         /// True if the eye is adapted to the light's white; otherwise its cast stays.
         pub adapted: bool,
@@ -63,17 +87,8 @@ impl Default for Light {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LightError {
     /// A number out of range.
-    #[error("the {name} is {value}: choose {least} to {most}")]
-    Range {
-        /// The quantity.
-        name: &'static str,
-        /// The number.
-        value: f64,
-        /// The least that it can be.
-        least: f64,
-        /// The most.
-        most: f64,
-    },
+    #[error(transparent)]
+    Range(#[from] OutOfRange),
     /// A lamp below the canvas, or of no direction.
     #[error("the light must come from above the canvas: give x, y, z with z > 0")]
     Below,
@@ -89,9 +104,6 @@ pub enum LightError {
     /// An unknown sampling rule.
     #[error("there is no such sampling rule: choose one of {}", RULES.join(", "))]
     Rule,
-    /// Too few or too many wavelengths.
-    #[error("a sampling rule has 4 to 16 wavelengths, not {0}")]
-    Samples(u32),
 }
 
 impl Light {
@@ -100,22 +112,10 @@ impl Light {
     /// # Errors
     /// [`LightError`].
     pub fn check(&self) -> Result<(), LightError> {
-        let bounded = [
-            ("intensity", self.intensity, INTENSITY),
-            ("exposure", self.exposure, INTENSITY),
-            ("relief strength", self.relief, 0.0..=10.0),
-            ("softness of shadows", self.softness, 0.0..=1.0),
-        ];
-        for (name, value, range) in bounded {
-            if !range.contains(&value) {
-                return Err(LightError::Range {
-                    name,
-                    value,
-                    least: *range.start(),
-                    most: *range.end(),
-                });
-            }
-        }
+        Intensity::check(self.intensity)?;
+        Exposure::check(self.exposure)?;
+        Relief::check(self.relief)?;
+        Softness::check(self.softness)?;
         let length: f64 = self.direction.iter().map(|v| v * v).sum();
         if !(1e-6..=1e6).contains(&length) || self.direction[2] <= 0.0 {
             return Err(LightError::Below);
@@ -134,8 +134,8 @@ impl Light {
         if !RULES.contains(&self.rule.as_str()) {
             return Err(LightError::Rule);
         }
-        if self.rule != "reference" && !SAMPLES.contains(&self.samples) {
-            return Err(LightError::Samples(self.samples));
+        if self.rule != "reference" {
+            Wavelengths::check(f64::from(self.samples))?;
         }
         Ok(())
     }

@@ -9,7 +9,10 @@ use crate::pose::Pose;
 use crate::values::ValueError;
 use crate::wire::define::{message, wire_enum, wire_struct};
 
-pub use light::{ILLUMINANT_NAME_MAX, INTENSITY, Light, LightError, RULES, SAMPLES};
+pub use light::{
+    Exposure, ILLUMINANT_NAME_MAX, Intensity, Light, LightError, RULES, Relief, Softness,
+    Wavelengths,
+};
 
 /// The canvas.
 pub const CANVAS: u32 = 0;

@@ -2,18 +2,21 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | `quantity` | range, unit and help of a number |
 //! | `numbers` | numbers with a range, written in a painter's units |
 //! | `texts` | names, paths and file contents of bounded length |
 //! | `ticks` | durations |
 
 mod numbers;
+mod quantity;
 mod texts;
 mod ticks;
 
 pub use numbers::{
-    Distance, FilmThickness, MarkerFlow, OpacityFactor, Share, StainThickness, Stiffness,
-    ThinnerShare, Wetness, Zoom,
+    CellSide, Distance, FilmLimit, FilmThickness, ForceShare, GuidanceShare, MarkerFlow,
+    OpacityFactor, Share, StainThickness, Stiffness, ThinnerShare, Tilt, Turn, Wetness, Zoom,
 };
+pub use quantity::{OutOfRange, Quantity};
 pub use texts::{
     BrushName, BrushToml, DeviceName, DeviceToml, LayerName, MaterialName, ModelName, SpectrumText,
     VersionName, WholePath,
@@ -25,18 +28,9 @@ use crate::limits::FARTHEST_M;
 /// A value that a command cannot have.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ValueError {
-    /// A number out of its range, in a painter's units.
-    #[error("{what} {value}{unit} is out of range: choose {range}{unit}")]
-    Range {
-        /// The quantity.
-        what: &'static str,
-        /// The number.
-        value: f64,
-        /// Its unit, after a space.
-        unit: &'static str,
-        /// The range, in words.
-        range: &'static str,
-    },
+    /// A number out of its range.
+    #[error(transparent)]
+    Range(#[from] OutOfRange),
     /// A text that is too long.
     #[error("{what} of {bytes} bytes is too long: it has at most {most}")]
     Length {

@@ -1,14 +1,14 @@
 //! Numbers with a range. They are stored in SI; texts and scripts have them in a painter's units.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 use serde::ser::{Serialize, Serializer};
 
-use super::ValueError;
-use crate::brush::ZOOMS;
-use crate::limits::{FILM_M, FLOWS, STAINS_M, STIFFNESS};
+use super::{Quantity, ValueError};
+use crate::quantity;
 use crate::wire::schema::{TypeTable, Wire};
 
 /// Reads a number, whole or not.
@@ -34,17 +34,22 @@ impl Visitor<'_> for Number {
     }
 }
 
-/// Largest share of thinner in a load.
-const MOST_THINNER: f64 = 0.95;
-
 macro_rules! number {
     (
         $(#[$meta:meta])*
-        $name:ident($inner:ty) $what:literal, $scale:literal $unit:literal, $range:literal if $good:expr
+        $name:ident($inner:ty): $what:literal, $range:expr, $usual:expr, $scale:literal $unit:literal, $help:literal
     ) => {
         $(#[$meta])*
         #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
         pub struct $name($inner);
+
+        impl Quantity for $name {
+            const NAME: &'static str = $what;
+            const RANGE: RangeInclusive<f64> = $range;
+            const USUAL: RangeInclusive<f64> = $usual;
+            const UNIT: &'static str = $unit;
+            const HELP: &'static str = $help;
+        }
 
         impl $name {
             /// A number as it is stored.
@@ -52,14 +57,11 @@ macro_rules! number {
             /// # Errors
             /// [`ValueError::Range`].
             pub fn new(value: $inner) -> Result<Self, ValueError> {
-                let good: fn(&$inner) -> bool = $good;
-                if good(&value) { Ok(Self(value)) } else { Err(ValueError::Range {
-                        what: $what,
-                        // Without the noise of the last digits.
-                        value: (f64::from(value) / $scale * 1e6).round() * 1e-6,
-                        unit: $unit,
-                        range: $range,
-                    }) }
+                if Self::stored_range().contains(&f64::from(value)) {
+                    Ok(Self(value))
+                } else {
+                    Err(Self::out_of_range(f64::from(value) / $scale).into())
+                }
             }
 
             /// A number in a painter's unit.
@@ -74,6 +76,13 @@ macro_rules! number {
             #[must_use]
             pub const fn get(self) -> $inner {
                 self.0
+            }
+
+            /// The range as it is stored.
+            #[must_use]
+            pub const fn stored_range() -> RangeInclusive<f64> {
+                let range = Self::RANGE;
+                *range.start() * $scale..=*range.end() * $scale
             }
         }
 
@@ -92,7 +101,11 @@ macro_rules! number {
         impl Serialize for $name {
             fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
                 // The digits of an f32 that are fewest are no f64's.
-                if to.is_human_readable() { to.serialize_f64(f64::from(self.0)) } else { self.0.serialize(to) }
+                if to.is_human_readable() {
+                    to.serialize_f64(f64::from(self.0))
+                } else {
+                    self.0.serialize(to)
+                }
             }
         }
 
@@ -114,44 +127,85 @@ macro_rules! number {
 }
 
 number! {
-    /// A share that dries, above 0 to 1.
-    Share(f32) "share", 1.0 "", "above 0, at most 1" if |share| *share > 0.0 && *share <= 1.0
+    /// A share that dries.
+    Share(f32): "share", f64::MIN_POSITIVE..=1.0, 0.01..=1.0, 1.0 "",
+    "Share of the wet film that dries, from below"
 }
 number! {
-    /// A factor on the optical thickness of a layer, 0 to 1.
-    OpacityFactor(f32) "opacity", 1.0 "", "0 to 1" if |factor| (0.0..=1.0).contains(factor)
+    /// A factor on the optical thickness of a layer.
+    OpacityFactor(f32): "opacity", 0.0..=1.0, Self::RANGE, 1.0 "",
+    "How much the layer hides what lies below; its relief stays"
 }
 number! {
-    /// Share of a load that is thinner, 0 to .95; pure thinner is a paint by itself.
-    ThinnerShare(f64) "thinner", 1.0 "", "0 to .95" if |share| (0.0..=MOST_THINNER).contains(share)
+    /// Share of a load that is thinner; pure thinner is a paint by itself.
+    ThinnerShare(f64): "thinner", 0.0..=0.95, Self::RANGE, 1.0 "",
+    "Share of thinner in what the brush takes up: thin paint is transparent and runs"
 }
 number! {
     /// Thickness of a film of paint, m; µm in texts.
-    FilmThickness(f64) "film", 1e-6 " µm", "1 to 5000" if |m| FILM_M.contains(m)
+    FilmThickness(f64): "film", 1.0..=5000.0, 1.0..=500.0, 1e-6 " µm",
+    "Thickness of the film: a thin toning has 20 µm, a couch of paint 100 µm"
+}
+number! {
+    /// Thickness of wet paint to which a brush adds none, m; µm in texts.
+    FilmLimit(f64): "limit", 1.0..=5000.0, 1.0..=2000.0, 1e-6 " µm",
+    "On the canvas the brush adds no paint where as much lies wet already; in hollows up to twice as much"
 }
 number! {
     /// Thickness of paint that stays however hard it is brushed, m; µm in texts.
-    StainThickness(f64) "stain", 1e-6 " µm", "0 to 1000" if |m| STAINS_M.contains(m)
+    StainThickness(f64): "stain", 0.0..=1000.0, 0.0..=50.0, 1e-6 " µm",
+    "Thickness of the film that soaks in and cannot be wiped off; thin on a heavily sized canvas"
 }
 number! {
     /// Distance from an edge of a surface, m; mm in texts.
-    Distance(f64) "distance", 1e-3 " mm", "0 to 5000" if |m| (0.0..=5.0).contains(m)
+    Distance(f64): "distance", 0.0..=5000.0, Self::RANGE, 1e-3 " mm",
+    "Distance from the edge of the surface"
 }
 number! {
     /// Flow of a marker, m of paint per m of its path; µm per mm in texts.
-    MarkerFlow(f64) "flow", 1e-3 " µm/mm", ".001 to 100" if |flow| FLOWS.contains(flow)
+    MarkerFlow(f64): "flow", 0.001..=100.0, Self::RANGE, 1e-3 " µm/mm",
+    "Thickness that the marker leaves along a millimetre of its path"
+}
+number! {
+    /// Side of a cell, m; mm in texts.
+    CellSide(f64): "cell", 0.01..=10.0, 0.02..=2.0, 1e-3 " mm",
+    "Side of a cell: a finer one shows finer marks and takes longer"
 }
 number! {
     /// A factor on the stiffness of a brush file.
-    Stiffness(f64) "stiffness", 1.0 "", "0.05 to 20" if |factor| STIFFNESS.contains(factor)
+    Stiffness(f64): "stiffness", 0.05..=20.0, Self::RANGE, 1.0 " ×",
+    "Factor on the stiffness that the brush was made with: 1 is as it was made"
 }
 number! {
     /// Wetness of a brush, from 0, as in its file, to 1, soaked.
-    Wetness(f64) "wetness", 1.0 "", "0 to 1" if |wetness| (0.0..=1.0).contains(wetness)
+    Wetness(f64): "wetness", 0.0..=1.0, Self::RANGE, 1.0 "",
+    "How soaked the head is: a soaked one is half as stiff"
 }
 number! {
     /// Desk lengths per surface length.
-    Zoom(f64) "zoom", 1.0 "", ".01 to 100" if |zoom| ZOOMS.contains(zoom)
+    Zoom(f64): "zoom", 0.01..=100.0, 0.1..=10.0, 1.0 "",
+    "How large it lies on the desk: 100 % is life size, and the brush stays as it is"
+}
+
+quantity! {
+    /// Tilt of a surface about its lower edge, degrees.
+    pub Tilt: "tilt", 0.0..=90.0, 0.0..=60.0, "°",
+    "How far its upper edge is raised, as on an easel"
+}
+quantity! {
+    /// Turn of a surface in its own plane, counter-clockwise, degrees.
+    pub Turn: "turn", -180.0..=180.0, Self::RANGE, "°",
+    "How far it is turned to the left"
+}
+quantity! {
+    /// Share of a device's force.
+    pub ForceShare: "share of the force", 0.0..=1.0, Self::RANGE, "",
+    "Share of the force that the brush asks for"
+}
+quantity! {
+    /// Share of the guides' force of a device.
+    pub GuidanceShare: "share of the guides' force", 0.0..=1.0, Self::RANGE, "",
+    "How strongly the recorded strokes hold your hand"
 }
 
 impl Share {
@@ -163,7 +217,7 @@ impl ThinnerShare {
     /// No thinner.
     pub const NONE: Self = Self(0.0);
     /// As much as there may be.
-    pub const MOST: Self = Self(MOST_THINNER);
+    pub const MOST: Self = Self(*Self::RANGE.end());
 }
 
 impl Default for ThinnerShare {
@@ -202,16 +256,32 @@ mod tests {
     #[test]
     fn numbers_are_in_range_or_rejected_with_it() {
         assert_eq!("40".parse(), FilmThickness::new(40.0 * 1e-6));
-        for text in ["0", "5001", "NaN", "inf", "-1", "thick"] {
-            let error = text.parse::<FilmThickness>().expect_err(text).to_string();
-            assert!(error.contains("µm") || error.contains("number"), "{error}");
+        for text in ["0", "5001", "NaN", "inf", "-1"] {
+            let error = text.parse::<FilmThickness>().expect_err(text);
+            assert!(
+                matches!(&error, ValueError::Range(fault) if fault.range == FilmThickness::RANGE),
+                "{error}"
+            );
         }
-        let error = Share::new(0.0).expect_err("nothing dries").to_string();
-        assert_eq!(error, "share 0 is out of range: choose above 0, at most 1");
+        let error = "thick".parse::<FilmThickness>();
+        assert!(matches!(error, Err(ValueError::NoNumber { .. })));
+        assert!(Share::new(0.0).is_err() && Share::new(f32::MIN_POSITIVE).is_ok());
         assert!(Share::new(f32::NAN).is_err() && Share::new(1.0).is_ok());
         assert_eq!(
             FilmThickness::USUAL,
             FilmThickness::in_unit(50.0).expect("usual")
         );
+    }
+
+    #[test]
+    fn the_ends_of_a_range_are_in_it_as_they_are_stored() {
+        for um in [FilmThickness::RANGE.start(), FilmThickness::RANGE.end()] {
+            assert!(FilmThickness::in_unit(*um).is_ok(), "{um}");
+        }
+        for flow in [1e-6, 0.1] {
+            assert!(MarkerFlow::new(flow).is_ok(), "{flow}");
+        }
+        assert!(StainThickness::new(1e-3).is_ok() && StainThickness::new(1.0001e-3).is_err());
+        assert!(Distance::new(5.0).is_ok() && Distance::new(5.000_001).is_err());
     }
 }

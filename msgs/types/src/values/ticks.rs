@@ -1,12 +1,12 @@
 //! Durations, counted in ticks of the painting's clock.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 
-use super::ValueError;
-use crate::limits::DRYING_TICKS;
+use super::{Quantity, ValueError};
 use crate::wire::schema::{TypeTable, Wire};
 
 /// Ticks of the painting's clock in a second.
@@ -22,17 +22,29 @@ const UNITS: [(&str, f64); 6] = [
     ("d", 86_400.0),
 ];
 
+/// Ticks of the longest duration, a year.
+const MOST_TICKS: u32 = TICKS_A_SECOND * 60 * 60 * 24 * 365;
+
 /// A duration of 1 tick to a year; `90s`, `20min` or `2h` in texts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Ticks(u32);
 
+impl Quantity for Ticks {
+    const NAME: &'static str = "time";
+    const RANGE: RangeInclusive<f64> =
+        1.0 / TICKS_A_SECOND as f64..=(MOST_TICKS / TICKS_A_SECOND) as f64;
+    const USUAL: RangeInclusive<f64> = 1.0..=*Self::RANGE.end();
+    const UNIT: &'static str = " s";
+    const HELP: &'static str = "Time in which all that is wet dries";
+}
+
 impl Ticks {
-    /// So many ticks.
+    /// A number of ticks.
     ///
     /// # Errors
     /// [`ValueError::Time`].
     pub fn new(ticks: u32) -> Result<Self, ValueError> {
-        if DRYING_TICKS.contains(&ticks) {
+        if (1..=MOST_TICKS).contains(&ticks) {
             Ok(Self(ticks))
         } else {
             Err(ValueError::Time(format!("{ticks}/{TICKS_A_SECOND}s")))
@@ -58,8 +70,7 @@ pub fn ticks_in(text: &str) -> Result<u32, ValueError> {
     let (_, seconds) = seconds.ok_or_else(wrong)?;
     let count: f64 = digits.trim().parse().map_err(|_| wrong())?;
     let ticks = (count * seconds * f64::from(TICKS_A_SECOND)).round();
-    let range = f64::from(*DRYING_TICKS.start())..=f64::from(*DRYING_TICKS.end());
-    if range.contains(&ticks) {
+    if (1.0..=f64::from(MOST_TICKS)).contains(&ticks) {
         Ok(ticks as u32)
     } else {
         Err(wrong())

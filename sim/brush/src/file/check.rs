@@ -2,6 +2,9 @@
 
 use std::ops::RangeInclusive;
 
+use maulstick_types::values::Quantity;
+
+use super::quantities::{Friction, HeadWidth, Lift, LoadFilm, LoadInside, Opening, Unevenness};
 use super::sections::{Chain, Layout, Surface};
 use super::{BrushError, BrushFile};
 
@@ -30,6 +33,10 @@ pub fn within(field: &str, value: f64, range: RangeInclusive<f64>) -> Result<(),
         value,
         range: format!("{} to {}", range.start(), range.end()),
     })
+}
+
+fn quantity<Q: Quantity>(value: f64) -> Result<(), BrushError> {
+    within(Q::NAME, value, Q::RANGE)
 }
 
 fn must(field: &str, value: usize, holds: bool, range: &str) -> Result<(), BrushError> {
@@ -83,16 +90,17 @@ pub fn check(file: &BrushFile) -> Result<(), BrushError> {
         surface(skin, file.spines.all_joints())?;
     }
     let contact = &file.contact;
-    within("contact.friction", contact.friction, 0.0..=2.0)?;
+    quantity::<Friction>(contact.friction)?;
     if let Some(sticking) = contact.friction_static {
-        within("contact.friction_static", sticking, contact.friction..=2.0)?;
+        let range = contact.friction..=*Friction::RANGE.end();
+        within("contact.friction_static", sticking, range)?;
     }
     within("contact.anisotropy", contact.anisotropy, 0.0..=1.0)?;
     within("contact.focus", contact.focus, 1.01..=100.0)?;
-    within("load.film_um", file.load.film_um, 0.0..=2000.0)?;
-    within("load.inside_um", file.load.inside_um, 0.0..=2000.0)?;
+    quantity::<LoadFilm>(file.load.film_um)?;
+    quantity::<LoadInside>(file.load.inside_um)?;
     for size in &file.sizes_mm {
-        within("sizes_mm", *size, 0.1..=300.0)?;
+        within("sizes_mm", *size, HeadWidth::RANGE)?;
     }
     file.force
         .as_ref()
@@ -152,7 +160,7 @@ fn tuples(tuples: &[[f64; 3]]) -> Result<(), BrushError> {
 
 fn head(file: &BrushFile) -> Result<(), BrushError> {
     let head = &file.head;
-    within("head.width_mm", head.width_mm, 0.1..=300.0)?;
+    quantity::<HeadWidth>(head.width_mm)?;
     within(
         "head.thickness_mm",
         head.thickness_mm.unwrap_or(1.0),
@@ -286,10 +294,10 @@ fn strips(file: &BrushFile) -> Result<(), BrushError> {
     within("strips.width_mm", strips.width_mm, 0.01..=50.0)?;
     within("strips.thickness_mm", strips.thickness_mm, 0.0..=10.0)?;
     within("strips.taper", strips.taper, 0.0..=1.0)?;
-    within("strips.lift_mm", strips.lift_mm, 0.0..=10.0)?;
+    quantity::<Lift>(strips.lift_mm)?;
     within("strips.sink_mm", strips.sink_mm, 0.0..=10.0)?;
-    within("strips.open", strips.open, 0.0..=2.0)?;
-    within("strips.unevenness", strips.unevenness, 0.0..=1.0)?;
+    quantity::<Opening>(strips.open)?;
+    quantity::<Unevenness>(strips.unevenness)?;
     within("strips.clumps", strips.clumps as f64, 0.0..=4096.0)?;
     for value in strips.clumping {
         within("strips.clumping", value, 0.0..=1.0)?;

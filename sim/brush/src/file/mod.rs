@@ -34,6 +34,7 @@
 
 pub mod check;
 pub mod library;
+pub mod quantities;
 pub mod sections;
 
 use maulstick_types::limits::BRUSH_FILE_MAX;

@@ -21,6 +21,7 @@ use maulstick_canvas::tile::TileId;
 use maulstick_optics::Paint;
 use maulstick_painting::{EditError, LaidTile, Painting, SurfaceError};
 use maulstick_types::paint::TILE;
+use maulstick_types::values::FilmThickness;
 
 pub use self::films::MOST_PAINTS;
 use self::films::{Films, Shares};
@@ -31,8 +32,6 @@ use crate::read_image::Image;
 
 /// Significant part of a ground's channel.
 const GROUND_BITS: u8 = 0xf8;
-/// Thickness of films, m.
-const FILM_M: std::ops::RangeInclusive<f64> = 1e-6..=5e-3;
 
 /// Ground and paints of an underpainting: all that the search needs, so that painting can continue meanwhile.
 #[derive(Clone, Debug)]
@@ -188,7 +187,7 @@ pub fn underpaint(
     thickness_m: f64,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Underpainting, ImportError> {
-    if !FILM_M.contains(&thickness_m) {
+    if !FilmThickness::stored_range().contains(&thickness_m) {
         return Err(ImportError::Thickness(thickness_m * 1e6));
     }
     let raster = colours(image, support.cells.map(|cells| cells as usize))?;

@@ -2,7 +2,7 @@
 
 use maulstick_types::Region;
 use maulstick_types::command::advice::Advice;
-use maulstick_types::limits::CELLS_M;
+use maulstick_types::values::{CellSide, Quantity as _};
 use maulstick_types::nearest::choice;
 
 /// A surface, a place on it or a property of it that is rejected.
@@ -74,10 +74,7 @@ impl SurfaceError {
             Self::SameModel(_) => "choose another one".to_owned(),
             Self::NoTooth { name, known } => choice(name, known.iter().copied()),
             Self::Cells(_) => "choose 1 to 65536 cells across and up".to_owned(),
-            Self::CellSize(_) => {
-                let [least, most] = [CELLS_M.start(), CELLS_M.end()].map(|m| 1e3 * m);
-                format!("choose cells of {least} to {most} mm")
-            }
+            Self::CellSize(_) => format!("choose cells of {}", CellSide::range_text()),
         })
     }
 }

@@ -1,6 +1,10 @@
 //! Pages of help: a first painting in seven steps, and what program this is.
 
+use std::fmt::Display;
+
 use eframe::egui::{Align2, Context, Frame, Grid, Margin, RichText, ScrollArea, Ui, Window};
+
+use maulstick_ui_kit::language::{filled, translated};
 
 use crate::input::keys::Action;
 use crate::widgets::context::PanelContext;
@@ -53,72 +57,85 @@ impl HelpPages {
     }
 }
 
+/// Title and text of a step; the places of its text are keys.
+type Step = (
+    &'static str,
+    &'static str,
+    &'static [(&'static str, Action)],
+);
+
+/// A first painting.
+const STEPS: [Step; 7] = [
+    (
+        tr_noop!("Take paint"),
+        tr_noop!(
+            "{clean} cleans the brush. Drag it twice through a heap of the palette, from one side to the other."
+        ),
+        &[("clean", Action::Clean)],
+    ),
+    (
+        tr_noop!("Mix"),
+        tr_noop!(
+            "Rub two paints together on the free middle of the palette; {palette} slides it out. {scrape} scrapes it clean."
+        ),
+        &[("palette", Action::Palette), ("scrape", Action::Scrape)],
+    ),
+    (
+        tr_noop!("step|Paint"),
+        tr_noop!(
+            "Drag over the canvas. A stroke thins as the brush runs out: {load} loads it with the mixture under it. {smaller} and {larger} set its width, {next} takes the next brush."
+        ),
+        &[
+            ("load", Action::LoadFrom),
+            ("smaller", Action::Smaller),
+            ("larger", Action::Larger),
+            ("next", Action::NextBrush),
+        ],
+    ),
+    (
+        tr_noop!("Wipe and undo"),
+        tr_noop!(
+            "Hold {clean} while you paint to wipe wet paint off. {undo} takes back the last step."
+        ),
+        &[("clean", Action::Clean), ("undo", Action::Undo)],
+    ),
+    (
+        tr_noop!("Dry"),
+        tr_noop!(
+            "{dry} dries the canvas. What you paint next lies on top and does not mix with it."
+        ),
+        &[("dry", Action::Dry)],
+    ),
+    (
+        tr_noop!("Glaze"),
+        tr_noop!(
+            "{panels} shows the panels. Take the preset Glaze in the panel Brush, hold the brush over a mixture and press {load}: what is dry shines through the thin film."
+        ),
+        &[("panels", Action::Panels), ("load", Action::LoadFrom)],
+    ),
+    (
+        tr_noop!("Keep it and show it"),
+        tr_noop!("{save} keeps the painting in a file, {export} exports a picture."),
+        &[("save", Action::Save), ("export", Action::Export)],
+    ),
+];
+
 /// The steps, with the painter's keys.
 fn steps_of(ui: &mut Ui, work: &PanelContext<'_>) {
-    let key = |act: Action| work.preferences.keys.written(ui.ctx(), act);
-    let steps = [
-        (
-            tr!("Take paint"),
-            tr!(
-                "{clean} cleans the brush. Drag it twice through a heap of the palette, from one side to the other.",
-                clean = key(Action::Clean)
-            ),
-        ),
-        (
-            tr!("Mix"),
-            tr!(
-                "Rub two paints together on the free middle of the palette; {palette} slides it out. {scrape} scrapes it clean.",
-                palette = key(Action::Palette),
-                scrape = key(Action::Scrape)
-            ),
-        ),
-        (
-            tr!("step|Paint"),
-            tr!(
-                "Drag over the canvas. A stroke thins as the brush runs out: {load} loads it with the mixture under it. {smaller} and {larger} set its width, {next} takes the next brush.",
-                load = key(Action::LoadFrom),
-                smaller = key(Action::Smaller),
-                larger = key(Action::Larger),
-                next = key(Action::NextBrush)
-            ),
-        ),
-        (
-            tr!("Wipe and undo"),
-            tr!(
-                "Hold {clean} while you paint to wipe wet paint off. {undo} takes back the last step.",
-                clean = key(Action::Clean),
-                undo = key(Action::Undo)
-            ),
-        ),
-        (
-            tr!("Dry"),
-            tr!(
-                "{dry} dries the canvas. What you paint next lies on top and does not mix with it.",
-                dry = key(Action::Dry)
-            ),
-        ),
-        (
-            tr!("Glaze"),
-            tr!(
-                "{panels} shows the panels. Take the preset Glaze in the panel Brush, hold the brush over a mixture and press {load}: what is dry shines through the thin film.",
-                panels = key(Action::Panels),
-                load = key(Action::LoadFrom)
-            ),
-        ),
-        (
-            tr!("Keep it and show it"),
-            tr!(
-                "{save} keeps the painting in a file, {export} exports a picture.",
-                save = key(Action::Save),
-                export = key(Action::Export)
-            ),
-        ),
-    ];
-    for (number, (title, text)) in steps.into_iter().enumerate() {
+    for (number, (title, text, acts)) in STEPS.into_iter().enumerate() {
+        let keys = acts
+            .iter()
+            .map(|(_, act)| work.preferences.keys.written(ui.ctx(), *act));
+        let keys: Vec<String> = keys.collect();
+        let places = acts.iter().zip(&keys);
+        let places: Vec<(&str, &dyn Display)> = places
+            .map(|((name, _), key)| (*name, key as &dyn Display))
+            .collect();
+        let title = format!("{} · {}", number + 1, translated(title));
         let frame = Frame::NONE.inner_margin(Margin::symmetric(0, 3));
         frame.show(ui, |ui| {
-            ui.label(RichText::new(format!("{} · {title}", number + 1)).strong());
-            ui.label(text);
+            ui.label(RichText::new(title).strong());
+            ui.label(filled(text, &places));
         });
     }
 }

@@ -1,5 +1,6 @@
 //! Listing of a folder, read on a thread: the folder may be on a network.
 
+use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::task::Poll;
 use std::time::SystemTime;
@@ -26,8 +27,8 @@ pub(crate) struct Entry {
 /// Content of a folder.
 #[derive(Debug)]
 enum Content {
-    Coming(BackgroundTask<Result<Vec<Entry>, String>>),
-    Here(Result<Vec<Entry>, String>),
+    Coming(BackgroundTask<std::io::Result<Vec<Entry>>>),
+    Here(std::io::Result<Vec<Entry>>),
 }
 
 /// A folder that is being looked at.
@@ -71,8 +72,8 @@ impl Folder {
     /// The entries; `None` until they have been read.
     ///
     /// # Errors
-    /// The system's error in words.
-    pub(crate) fn entries(&mut self, context: &Context) -> Option<Result<&[Entry], &str>> {
+    /// The system's error.
+    pub(crate) fn entries(&mut self, context: &Context) -> Option<Result<&[Entry], &Error>> {
         let content = self.content.get_or_insert_with(|| {
             let (path, kinds) = (self.path.clone(), self.kinds);
             let read = move || read(&path, kinds);
@@ -81,25 +82,20 @@ impl Folder {
         if let Content::Coming(task) = content
             && let Poll::Ready(found) = task.poll()
         {
-            let fell = || Err(tr!("it cannot be read").to_owned());
+            let fell = || Err(ErrorKind::Interrupted.into());
             *content = Content::Here(found.unwrap_or_else(fell));
         }
         match content {
             Content::Coming(_) => None,
             Content::Here(Ok(entries)) => Some(Ok(entries)),
-            Content::Here(Err(what)) => Some(Err(what)),
+            Content::Here(Err(error)) => Some(Err(error)),
         }
     }
 }
 
-fn read(path: &Path, kinds: &[&str]) -> Result<Vec<Entry>, String> {
+fn read(path: &Path, kinds: &[&str]) -> std::io::Result<Vec<Entry>> {
     let now = SystemTime::now();
-    let found = std::fs::read_dir(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => tr!("there is no such folder").to_owned(),
-        std::io::ErrorKind::NotADirectory => tr!("this is no folder").to_owned(),
-        std::io::ErrorKind::PermissionDenied => tr!("this folder is closed to you").to_owned(),
-        _ => tr!("the folder cannot be read: {error}", error),
-    })?;
+    let found = std::fs::read_dir(path)?;
     let mut entries = Vec::new();
     for entry in found.flatten().take(MOST) {
         let name = entry.file_name().to_string_lossy().into_owned();
@@ -139,8 +135,8 @@ mod tests {
         assert!(entries[0].is_folder && entries[0].age.is_empty());
         assert_eq!(entries[2].age, "just now");
         let none = read(&folder.path().join("none"), &[]).expect_err("none");
-        assert_eq!(none, "there is no such folder");
+        assert_eq!(none.kind(), ErrorKind::NotFound);
         let file = read(&folder.path().join("sea.maul"), &[]).expect_err("a file");
-        assert_eq!(file, "this is no folder");
+        assert_eq!(file.kind(), ErrorKind::NotADirectory);
     }
 }

@@ -2,6 +2,7 @@
 
 use eframe::egui::Ui;
 
+use crate::dialogs::dialog::fault::DialogFault;
 use crate::rig::state::RigState;
 
 /// State of the painting that would be closed.
@@ -43,15 +44,12 @@ impl UnsavedState {
     /// Checks that another painting may replace it.
     ///
     /// # Errors
-    /// Advice in words.
-    pub(crate) fn check(self) -> Result<(), String> {
-        match self.would_go && !self.let_go {
-            true => Err(tr!(
-                "The painting on the easel is in no file and would be gone. Keep it first \
-                 (Escape, then Ctrl+S), or tick that you let it go."
-            )
-            .to_owned()),
-            false => Ok(()),
+    /// [`DialogFault::Unsaved`].
+    pub(crate) fn check(self) -> Result<(), DialogFault> {
+        if self.would_go && !self.let_go {
+            Err(DialogFault::Unsaved)
+        } else {
+            Ok(())
         }
     }
 }

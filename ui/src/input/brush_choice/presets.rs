@@ -1,11 +1,10 @@
 //! Presets taken up, and made of the brush in the hand.
 
-use maulstick_painting::edits::Clean;
 use maulstick_rig::UserError;
-use maulstick_types::Edit;
+use maulstick_types::command::Command;
 use maulstick_types::scene::BrushMode;
-use maulstick_types::values::BrushName;
 
+use crate::panels::desk_edits;
 use crate::settings::brush_library::is_of_library;
 use crate::settings::presets::{BeforePreset, Preset};
 use crate::widgets::context::PanelContext;
@@ -48,22 +47,17 @@ impl PanelContext<'_> {
         }
         let file = preset.brush()?;
         let brush = self.rig.brush_name().to_owned();
-        let (tune, handle) = preset.edits(&brush)?;
+        let [tune, handle] = preset.edits(&brush)?;
         let mut loading = preset.loading.clone();
         if loading.paint.is_empty() && loading.thinner > 0.0 {
             loading
                 .paint
                 .clone_from(&self.preferences.brushes.loading.paint);
         }
-        let load: Option<Edit> = match loading.paint.is_empty() {
-            true if preset.clean => Some(
-                Clean {
-                    brush: BrushName::new(&brush)?,
-                }
-                .into(),
-            ),
+        let load: Option<Command> = match loading.paint.is_empty() {
+            true if preset.clean => Some(desk_edits::clean(&brush)?),
             true => None,
-            false => Some(loading.edit(&brush, &self.rig.library)?.into()),
+            false => Some(loading.command(&brush, &self.rig.library)?),
         };
         let (tuning, pressure) = (self.rig.tuning(), self.preferences.brushes.mouse.pressure);
         let before = &mut self.preferences.brushes.before_preset;
@@ -94,7 +88,7 @@ impl PanelContext<'_> {
             self.preferences.brushes.loading = loading;
         }
         if let Some(load) = load {
-            self.then(load.into());
+            self.then(load);
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! Requests of rack, keys and presets.
 
-use maulstick_painting::edits::{Clean, Handle, Tune, Undo};
+use maulstick_painting::edits::{Clean, Handle, Load, Tune, Undo};
 use maulstick_rig::UserError;
 use maulstick_types::command::Detail;
 use maulstick_types::values::BrushName;

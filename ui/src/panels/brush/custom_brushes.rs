@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use eframe::egui::{Button, Key, TextEdit, Ui};
-use maulstick_ui_kit::labelled;
+use maulstick_ui_kit::rows::row;
 
 use super::entry;
 use crate::render::brush::icon_cache;
@@ -20,8 +20,9 @@ impl OwnBrushes {
         ui.label(tr!("A brush file (.toml, .glb) joins the rack."));
         let edit = TextEdit::singleline(&mut self.path)
             .hint_text("/home/me/brushes/rake.toml")
-            .desired_width(190.0);
-        let shown = labelled::named(ui, tr!("File"), tr!("Where the brush file lies."), edit);
+            .desired_width(f32::INFINITY);
+        let shown = row(ui, tr!("File"), |ui| ui.add(edit))
+            .on_hover_text(tr!("Where the brush file lies."));
         let enter = shown.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         let is_given = !self.path.trim().is_empty();
         let add = ui.add_enabled(is_given, Button::new(tr!("Add to the rack")));

@@ -18,11 +18,13 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{Button, ComboBox, Rect, RichText, Sense, Ui, vec2};
 use maulstick_brush::BrushFile;
+use maulstick_brush::file::quantities::HeadWidth;
 use maulstick_painting::edits::Tune;
-use maulstick_types::limits::STIFFNESS;
 use maulstick_types::scene::{BrushHandling, Tuning};
-use maulstick_ui_kit::labelled::{self, PendingValue};
-use maulstick_ui_kit::language::known;
+use maulstick_types::values::{Quantity, Stiffness, Wetness};
+use maulstick_ui_kit::language::{known, translated};
+use maulstick_ui_kit::pending::Pending;
+use maulstick_ui_kit::rows::{Number, Sliders};
 
 use crate::input::brush_choice::{resized, widths_mm};
 use crate::input::keymap::Keymap;
@@ -30,11 +32,14 @@ use crate::input::keys::Action;
 use crate::panels::Panel;
 use crate::render::brush::icon_cache;
 use crate::settings::brush_library::{called, library};
-use crate::settings::grip::{Grip, MOUSE_PRESSURE};
-use crate::widgets::context::PanelContext;
+use crate::widgets::context::{PanelContext, ask};
+use maulstick_window_pen::mouse::grip::{Grip, MousePressure, MouseTurn};
 
 /// The portrait of the brush in the hand, points.
 const PORTRAIT: [f32; 2] = [44.0, 64.0];
+
+const STIFFNESS: Number<'_> = Number::of::<Stiffness>(tr_noop!("Stiffness"), 2);
+const WETNESS: Number<'_> = Number::percent::<Wetness>(tr_noop!("Wetness"));
 
 /// The panel.
 #[derive(Debug, Default)]
@@ -43,8 +48,9 @@ pub(crate) struct BrushPanel {
     dragged: Option<BrushFile>,
     /// For which brush the widths hold that it can have, mm.
     widths: Option<(BrushFile, RangeInclusive<f64>)>,
-    tuning: PendingValue<Tuning>,
-    handling: PendingValue<BrushHandling>,
+    sliders: Sliders,
+    tuning: Pending<Tuning>,
+    handling: Pending<BrushHandling>,
     paint: paint::PaintRows,
     own: custom_brushes::OwnBrushes,
     presets: presets::PresetRows,
@@ -66,20 +72,17 @@ impl Panel for BrushPanel {
         shape(ui, work, &file);
         let mut is_held = self.width(ui, work, &file);
         self.tuning(ui, work);
-        modes::show(ui, work, &mut self.handling);
+        modes::show(ui, work, (&mut self.sliders, &mut self.handling));
         ui.collapsing(tr!("Mouse"), |ui| {
-            mouse(
-                ui,
-                &work.preferences.keys,
-                &mut work.preferences.brushes.mouse,
-            );
+            let grip = &mut work.preferences.brushes.mouse;
+            mouse(ui, &work.preferences.keys, &mut self.sliders, grip);
         });
         ui.separator();
         self.paint.show(ui, work);
         ui.separator();
         self.presets.show(ui, work);
         let bristles = ui.collapsing(tr!("Bristles"), |ui| {
-            bristles::show(ui, work, &file, &mut self.dragged)
+            bristles::show(ui, work, &mut self.sliders, &file, &mut self.dragged)
         });
         is_held |= bristles.body_returned.unwrap_or(false);
         ui.collapsing(tr!("Own brush files"), |ui| self.own.show(ui, work));
@@ -121,23 +124,22 @@ fn shape(ui: &mut Ui, work: &mut PanelContext<'_>, file: &BrushFile) {
 }
 
 /// Turn and pressure of a brush that the mouse moves.
-fn mouse(ui: &mut Ui, keys: &Keymap, grip: &mut Grip) {
-    let hint = |ui: &Ui, words: &str, acts: &[Action]| keys.hint(ui.ctx(), words, acts);
+fn mouse(ui: &mut Ui, keys: &Keymap, sliders: &mut Sliders, grip: &mut Grip) {
+    let context = ui.ctx().clone();
+    let hint = |words: &str, acts: &[Action]| keys.hint(&context, words, acts);
     let check = ui.checkbox(&mut grip.follows, tr!("Brush follows the stroke"));
     let words = tr!("Its broad side stays across the stroke.");
-    check.on_hover_text(hint(ui, words, &[Action::Follow]));
-    let slider = labelled::slider(&mut grip.turn_deg, -180.0..=180.0, "°").max_decimals(0);
-    let words = tr!("Angle from across the stroke, or from the horizontal if it does not follow.");
-    let hover = hint(ui, words, &[Action::TurnLeft, Action::TurnRight]);
-    labelled::named(ui, tr!("Turn"), &hover, slider);
-    let mut percent = (100.0 * grip.pressure).round();
-    let [least, most] = [MOUSE_PRESSURE.start(), MOUSE_PRESSURE.end()].map(|share| 100.0 * share);
-    let slider = labelled::slider(&mut percent, least..=most, " %").max_decimals(0);
-    let words = tr!("Pressure while the button is down.");
-    let hover = hint(ui, words, &[Action::Lighter, Action::Harder]);
-    if labelled::named(ui, tr!("Pressure"), &hover, slider).changed() {
-        grip.pressure = 0.01 * percent;
-    }
+    check.on_hover_text(hint(words, &[Action::Follow]));
+    let words = translated(MouseTurn::HELP);
+    let words = hint(words, &[Action::TurnLeft, Action::TurnRight]);
+    let turn = Number::of::<MouseTurn>(tr_noop!("Turn"), 0).hint(&words);
+    let words = translated(MousePressure::HELP);
+    let words = hint(words, &[Action::Lighter, Action::Harder]);
+    let pressure = Number::percent::<MousePressure>(tr_noop!("Pressure")).hint(&words);
+    sliders.rows(
+        ui,
+        [(&turn, &mut grip.turn_deg), (&pressure, &mut grip.pressure)],
+    );
 }
 
 /// A brush of the list; whether it was chosen.
@@ -167,51 +169,35 @@ impl BrushPanel {
 
     /// Width slider; true while it is dragged.
     fn width(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, file: &BrushFile) -> bool {
-        let (unit_mm, decimals, sign) = work.preferences.window.units.small();
-        let mut width = file.head.width_mm / unit_mm;
-        let hover = work.preferences.keys.hint(
-            ui.ctx(),
-            tr!("Width of the head. A wider brush is longer and stiffer in proportion."),
-            &[Action::Smaller, Action::Larger],
-        );
-        let range = self.widths(file);
-        let range = range.start() / unit_mm..=range.end() / unit_mm;
-        let slider = labelled::slider(&mut width, range, sign).max_decimals(decimals);
-        let shown = labelled::named(ui, tr!("Width"), &hover, slider);
-        if shown.changed() {
-            match resized(file, width * unit_mm) {
-                Ok(scaled) => self.dragged = Some(scaled),
-                Err(error) => {
-                    let help = tr!("choose another width");
-                    work.notifications.fault(error.to_string(), help);
-                }
+        let keys = &work.preferences.keys;
+        let words = translated(HeadWidth::HELP);
+        let hint = keys.hint(ui.ctx(), words, &[Action::Smaller, Action::Larger]);
+        let units = work.preferences.window.units;
+        let number = Number::length::<HeadWidth>(tr_noop!("Width"), units)
+            .within(&self.widths(file))
+            .hint(&hint);
+        let change = self.sliders.row(ui, &number, file.head.width_mm);
+        match change.moved.map(|width_mm| resized(file, width_mm)) {
+            Some(Ok(scaled)) => self.dragged = Some(scaled),
+            Some(Err(error)) => {
+                let help = tr!("choose another width");
+                work.notifications.fault(error.to_string(), help);
             }
+            None => {}
         }
-        shown.dragged()
+        change.is_dragged
     }
 
     fn tuning(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        let tuning = self.tuning.shown(ui, work.rig.tuning());
-        let mut wanted = tuning.clone();
-        let mut factor = wanted.stiffness;
-        labelled::named(
-            ui,
-            tr!("Stiffness"),
-            tr!("Factor on the stiffness that the brush was made with: 1 is as it was made."),
-            labelled::slider(&mut factor, STIFFNESS, " ×"),
-        );
-        if labelled::is_moved(wanted.stiffness, factor) {
-            wanted.stiffness = factor;
-        }
-        let mut percent = (wanted.wetness * 100.0).round();
-        let slider = labelled::slider(&mut percent, 0.0..=100.0, " %").max_decimals(0);
-        let hover = tr!("How soaked the head is: a soaked one is half as stiff.");
-        if labelled::named(ui, tr!("Wetness"), hover, slider).changed() {
-            wanted.wetness = percent / 100.0;
-        }
-        if wanted != tuning {
-            self.tuning.ask(ui, wanted.clone());
-            crate::widgets::context::ask(work, Tune::try_from(&wanted));
+        let now_s = ui.input(|input| input.time);
+        let mut wanted = self.tuning.shown(now_s, &work.rig.tuning());
+        let numbers = [
+            (&STIFFNESS, &mut wanted.stiffness),
+            (&WETNESS, &mut wanted.wetness),
+        ];
+        if self.sliders.rows(ui, numbers) {
+            self.tuning.hold(now_s, wanted.clone());
+            ask(work, Tune::try_from(&wanted));
         }
     }
 }

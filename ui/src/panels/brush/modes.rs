@@ -2,15 +2,16 @@
 
 use eframe::egui::{ComboBox, Ui};
 use maulstick_painting::edits::Handle;
-use maulstick_types::limits::FLOWS;
 use maulstick_types::scene::{BrushHandling, BrushMode};
-use maulstick_ui_kit::labelled::{self, PendingValue};
+use maulstick_types::values::{FilmLimit, MarkerFlow, Quantity};
 use maulstick_ui_kit::language::translated;
+use maulstick_ui_kit::pending::Pending;
+use maulstick_ui_kit::rows::{Number, Sliders, row};
 
-use crate::widgets::context::PanelContext;
+use crate::widgets::context::{PanelContext, ask};
 
-/// Most paint that a painter is offered as a bound, µm.
-const MOST_UM: std::ops::RangeInclusive<f64> = 1.0..=2000.0;
+const FLOW: Number<'_> = Number::of::<MarkerFlow>(tr_noop!("Flow"), 3);
+const LIMIT: Number<'_> = Number::of::<FilmLimit>(tr_noop!("Thickness"), 0);
 /// Proposed film limit where there was none, m.
 const PROPOSED_M: f64 = 60e-6;
 
@@ -57,69 +58,58 @@ const WAYS: [(BrushMode, &str, &str); 7] = [
 pub(super) fn show(
     ui: &mut Ui,
     work: &mut PanelContext<'_>,
-    asked: &mut PendingValue<BrushHandling>,
+    (sliders, asked): (&mut Sliders, &mut Pending<BrushHandling>),
 ) {
-    let handling = asked.shown(ui, work.rig.handling());
+    let now_s = ui.input(|input| input.time);
+    let handling = asked.shown(now_s, &work.rig.handling());
     let mut wanted = handling.clone();
-    ui.horizontal(|ui| {
-        let hover = tr!("What the brush does with the paint that it touches.");
-        let name = labelled::label(ui, tr!("Mode"), hover);
-        let mut ways = WAYS.iter();
-        let own = ways.find(|(mode, ..)| *mode == handling.mode);
-        ComboBox::from_id_salt("way")
-            .width(150.0)
-            .selected_text(own.map_or("", |(_, words, _)| translated(words)))
-            .show_ui(ui, |ui| {
-                for (mode, words, does) in &WAYS {
-                    let is_own = *mode == handling.mode;
-                    if ui
-                        .selectable_label(is_own, translated(words))
-                        .on_hover_text(translated(does))
-                        .clicked()
-                    {
-                        wanted.mode = mode.clone();
-                    }
-                }
-            })
-            .response
-            .labelled_by(name.id)
-            .on_hover_text(own.map_or("", |(.., does)| translated(does)));
-    });
+    mode(ui, &mut wanted.mode);
     if handling.mode == BrushMode::Marker {
         // Micrometres along a millimetre.
-        let mut um = handling.flow * 1e3;
-        let range = FLOWS.start() * 1e3..=FLOWS.end() * 1e3;
-        let slider = labelled::slider(&mut um, range, " µm/mm").max_decimals(3);
-        let hover = tr!("Thickness that the marker leaves along a millimetre of its way.");
-        if labelled::named(ui, tr!("Flow"), hover, slider).changed() {
-            wanted.flow = um * 1e-3;
-        }
+        let change = sliders.row(ui, &FLOW, handling.flow * 1e3);
+        wanted.flow = change.moved.map_or(wanted.flow, |um| um * 1e-3);
     }
     if !matches!(handling.mode, BrushMode::Sampler | BrushMode::Vacuum) {
-        most(ui, &handling, &mut wanted);
+        limit(ui, sliders, &mut wanted.most_m);
     }
     if wanted != handling {
-        asked.ask(ui, wanted.clone());
-        crate::widgets::context::ask(work, Handle::try_from(&wanted));
+        asked.hold(now_s, wanted.clone());
+        ask(work, Handle::try_from(&wanted));
     }
 }
 
-fn most(ui: &mut Ui, handling: &BrushHandling, wanted: &mut BrushHandling) {
-    let hover = tr!(
-        "On the canvas the brush adds no paint where as much lies wet already; in hollows up to twice as much."
-    );
-    let mut bounded = handling.most_m > 0.0;
+fn mode(ui: &mut Ui, mode: &mut BrushMode) {
+    let own = WAYS.iter().find(|(other, ..)| other == mode);
+    let (words, does) = own.map_or(("", ""), |(_, words, does)| (*words, *does));
+    row(ui, tr!("Mode"), |ui| {
+        let combo = ComboBox::from_id_salt("way")
+            .width(ui.available_width())
+            .selected_text(translated(words));
+        let shown = combo.show_ui(ui, |ui| {
+            for (other, words, does) in &WAYS {
+                let choice = ui.selectable_label(other == mode, translated(words));
+                if choice.on_hover_text(translated(does)).clicked() {
+                    *mode = other.clone();
+                }
+            }
+        });
+        shown.response
+    })
+    .on_hover_text(translated(does));
+}
+
+/// Limit of the wet film; 0 for none.
+fn limit(ui: &mut Ui, sliders: &mut Sliders, most_m: &mut f64) {
+    let mut bounded = *most_m > 0.0;
     let check = ui.checkbox(&mut bounded, tr!("Limit the thickness"));
-    if check.on_hover_text(hover).changed() {
-        wanted.most_m = if bounded { PROPOSED_M } else { 0.0 };
+    if check.on_hover_text(translated(FilmLimit::HELP)).changed() {
+        *most_m = if bounded { PROPOSED_M } else { 0.0 };
     }
     // Always there, so that nothing below it moves as a preset is clicked.
     ui.add_enabled_ui(bounded, |ui| {
-        let shown_m = if bounded { wanted.most_m } else { PROPOSED_M };
-        let mut um = (shown_m * 1e9).round() * 1e-3;
-        let slider = labelled::slider(&mut um, MOST_UM, " µm").max_decimals(0);
-        if labelled::named(ui, tr!("Thickness"), hover, slider).changed() {
-            wanted.most_m = um * 1e-6;
+        let shown_m = if bounded { *most_m } else { PROPOSED_M };
+        if let Some(um) = sliders.row(ui, &LIMIT, shown_m * 1e6).moved {
+            *most_m = um * 1e-6;
         }
     });
 }

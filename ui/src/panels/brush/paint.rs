@@ -1,76 +1,59 @@
 //! Controls that load and clean the brush in the hand.
 
-use eframe::egui::{Button, TextEdit, Ui};
-use maulstick_painting::edits::Clean;
+use eframe::egui::{Button, Ui};
 use maulstick_rig::UserError;
-use maulstick_types::values::{BrushName, ThinnerShare};
-use maulstick_ui_kit::labelled;
+use maulstick_types::values::ThinnerShare;
+use maulstick_ui_kit::rows::{Number, Sliders, row};
 
 use crate::input::keys::Action;
-use crate::settings::brush_load::{completed, completions};
-use crate::widgets::brush_gauge;
-use crate::widgets::context::PanelContext;
+use crate::panels::desk_edits;
+use crate::widgets::context::{PanelContext, ask};
+use crate::widgets::{brush_gauge, mixture_field};
 
-/// Names that are proposed at most.
-const PROPOSED: usize = 4;
+const THINNER: Number<'_> = Number::percent::<ThinnerShare>(tr_noop!("Thinner"));
 
 /// The rows.
 #[derive(Debug, Default)]
 pub(super) struct PaintRows {
+    sliders: Sliders,
     fault: Option<UserError>,
 }
 
 impl PaintRows {
     pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let before = work.preferences.brushes.loading.clone();
-        if work
-            .rig
-            .brush()
-            .is_some_and(|brush| brush.carried.is_some())
-        {
-            ui.horizontal(|ui| {
-                labelled::label(
-                    ui,
-                    tr!("Carries"),
-                    tr!("The paint that is on the brush now."),
-                );
-                brush_gauge::show(ui, work);
-            });
+        let carried = work.rig.brush().and_then(|brush| brush.carried.as_ref());
+        if carried.is_some() {
+            row(ui, tr!("Carries"), |ui| {
+                ui.horizontal(|ui| brush_gauge::show(ui, work)).response
+            })
+            .on_hover_text(tr!("The paint that is on the brush now."));
         }
+        let library = &work.rig.library;
+        let loading = &mut work.preferences.brushes.loading;
         let hover =
             tr!("A paint's name, or a mixture by volume such as 2 Cobalt Blue, 1 Titanium White");
-        let mut enter = field(ui, work, tr!("Paint"), hover, |loading| {
-            Some(&mut loading.paint)
-        });
-        let mut two = work.preferences.brushes.loading.beside.is_some();
+        let words = (tr!("Paint"), hover);
+        let (_, mut enter) = mixture_field::show(ui, words, &mut loading.paint, library);
+        let mut two = loading.beside.is_some();
         let check = ui.checkbox(&mut two, tr!("Second colour on the right half"));
         let hover = tr!("Two paints side by side on one brush (double loading).");
         if check.on_hover_text(hover).changed() {
-            work.preferences.brushes.loading.beside = two.then(String::new);
+            loading.beside = two.then(String::new);
         }
-        if two {
+        if let Some(beside) = &mut loading.beside {
             let hover = tr!("What the right half of the brush takes up.");
-            enter |= field(ui, work, tr!("Right half"), hover, |loading| {
-                loading.beside.as_mut()
-            });
+            let words = (tr!("Right half"), hover);
+            enter |= mixture_field::show(ui, words, beside, library).1;
         }
-        let mut percent = (work.preferences.brushes.loading.thinner * 100.0).round();
-        let most = ThinnerShare::MOST.get() * 100.0;
-        let slider = labelled::slider(&mut percent, 0.0..=most, " %").max_decimals(0);
-        let hover =
-            tr!("Share of thinner in what the brush takes up: thin paint is transparent and runs.");
-        if labelled::named(ui, tr!("Thinner"), hover, slider).changed() {
-            work.preferences.brushes.loading.thinner = percent / 100.0;
-        }
+        let change = self.sliders.row(ui, &THINNER, loading.thinner);
+        loading.thinner = change.moved.unwrap_or(loading.thinner);
         self.buttons(ui, work, enter);
         if before != work.preferences.brushes.loading {
             self.fault = None;
         }
         if let Some(fault) = &self.fault {
-            labelled::wrong(ui, &fault.what);
-            if let Some(help) = &fault.help {
-                ui.label(help);
-            }
+            mixture_field::fault(ui, fault);
         }
     }
 
@@ -92,8 +75,8 @@ impl PaintRows {
                 .hint(ui.ctx(), words, &[Action::Clean]);
             let clean = ui.button(tr!("Clean")).on_hover_text(hover);
             if clean.clicked() {
-                let brush = BrushName::new(work.rig.brush_name());
-                crate::widgets::context::ask(work, brush.map(|brush| Clean { brush }));
+                let clean = desk_edits::clean(work.rig.brush_name());
+                ask(work, clean);
             }
         });
     }
@@ -104,45 +87,13 @@ impl PaintRows {
             .preferences
             .brushes
             .loading
-            .edit(&brush, &work.rig.library);
+            .command(&brush, &work.rig.library);
         self.fault = match load {
             Ok(load) => {
-                work.then(load.into());
+                work.then(load);
                 None
             }
             Err(fault) => Some(fault),
         };
     }
-}
-
-/// A field for a mixture, and names that go on with what is typed; whether Enter was pressed in it.
-fn field(
-    ui: &mut Ui,
-    work: &mut PanelContext<'_>,
-    name: &str,
-    hover: &str,
-    part: impl Fn(&mut crate::settings::brush_load::BrushLoad) -> Option<&mut String>,
-) -> bool {
-    let Some(text) = part(&mut work.preferences.brushes.loading) else {
-        return false;
-    };
-    let edit = TextEdit::singleline(text)
-        .hint_text("2 Cobalt Blue, 1 …")
-        .char_limit(4096)
-        .desired_width(190.0);
-    let shown = labelled::named(ui, name, hover, edit);
-    let enter = shown.lost_focus() && ui.input(|input| input.key_pressed(eframe::egui::Key::Enter));
-    let names = completions(text, &work.rig.library, PROPOSED);
-    if !names.is_empty() {
-        ui.horizontal_wrapped(|ui| {
-            ui.add_space(8.0);
-            for proposed in names {
-                if ui.small_button(proposed).clicked() {
-                    *text = completed(text, proposed);
-                    shown.request_focus();
-                }
-            }
-        });
-    }
-    enter
 }

@@ -1,8 +1,8 @@
 //! Presets: brushes with their paint.
 
 use eframe::egui::{Button, Color32, Key, TextEdit, TextStyle, Ui, vec2};
-use maulstick_ui_kit::labelled;
 use maulstick_ui_kit::language::known;
+use maulstick_ui_kit::rows::{row, wrong};
 
 use super::entry;
 use crate::settings::presets::{Preset, check_name};
@@ -152,12 +152,8 @@ impl PresetRows {
         let Some((_, name)) = &mut self.renamed else {
             return;
         };
-        let shown = labelled::named(
-            ui,
-            tr!("New name"),
-            "",
-            TextEdit::singleline(name).desired_width(190.0),
-        );
+        let edit = TextEdit::singleline(name).desired_width(f32::INFINITY);
+        let shown = row(ui, tr!("New name"), |ui| ui.add(edit));
         if !shown.has_focus() && !shown.lost_focus() {
             shown.request_focus();
         }
@@ -171,7 +167,7 @@ impl PresetRows {
         match check_name(&name, others.map(|(_, preset)| preset.name.as_str())) {
             _ if is_kept => {}
             Ok(()) => work.preferences.brushes.presets[place].name = name,
-            Err(what) => work.notifications.fault(what, String::new()),
+            Err(fault) => work.notifications.fault(fault.words(), String::new()),
         }
         self.renamed = None;
     }
@@ -179,9 +175,9 @@ impl PresetRows {
     fn save(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let edit = TextEdit::singleline(&mut self.name)
             .hint_text(tr!("Sky wash"))
-            .desired_width(190.0);
+            .desired_width(f32::INFINITY);
         let hover = tr!("What the brush in the hand, its settings and its paint are to be called.");
-        let shown = labelled::named(ui, tr!("Name"), hover, edit);
+        let shown = row(ui, tr!("Name"), |ui| ui.add(edit)).on_hover_text(hover);
         if shown.changed() {
             self.wrong = None;
         }
@@ -203,11 +199,11 @@ impl PresetRows {
                         self.name.clear();
                     }
                 }
-                Err(what) => self.wrong = Some(what),
+                Err(fault) => self.wrong = Some(fault.words()),
             }
         }
         if let Some(what) = &self.wrong {
-            labelled::wrong(ui, what);
+            wrong(ui, what);
         }
     }
 }

@@ -236,7 +236,7 @@ fn bristles_are_changed_and_come_back() {
 }
 
 #[test]
-fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
+fn a_preset_is_saved_and_taken_up() {
     let mut bench = Bench::new();
     bench.preferences.brushes.presets.clear();
     bench.preferences.brushes.loading.paint = "Bone Black".into();
@@ -285,6 +285,15 @@ fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
         harness.state().preferences.brushes.loading.paint,
         "Bone Black"
     );
+}
+
+#[test]
+fn a_preset_is_renamed_deleted_and_brought_back() {
+    let mut bench = Bench::new();
+    let presets = &mut bench.preferences.brushes.presets;
+    presets.truncate(1);
+    presets[0].name = "Ink".into();
+    let mut harness = panel(bench);
     harness.get_by_label("Rename").click();
     harness.run();
     harness.run();

@@ -12,14 +12,7 @@ use crate::widgets::context::{PanelContext, ask};
 /// The paint that the brush carries.
 const CARRIED: &str = tr_noop!("What the brush carries");
 
-const THICKNESS: Number<'_> = Number {
-    word: tr_noop!("Thickness"),
-    hover: tr_noop!("How thick the film is, µm: a thin toning has 20, a couch of paint 100"),
-    range: 1.0..=500.0,
-    unit: " µm",
-    decimals: 0,
-    factors: true,
-};
+const THICKNESS: Number<'_> = Number::of::<FilmThickness>(tr_noop!("Thickness"), 0);
 
 /// Form for the next film.
 #[derive(Clone, Debug)]

@@ -15,7 +15,9 @@ use maulstick_canvas::relief::tooth;
 use maulstick_models::model_names;
 use maulstick_painting::edits::{Convert, Flip, Ground, Piles, Place, Size, Tooth};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
-use maulstick_types::values::{MaterialName, ModelName, StainThickness, ValueError};
+use maulstick_types::values::{
+    MaterialName, ModelName, StainThickness, Tilt, Turn, ValueError, Zoom,
+};
 use maulstick_ui_kit::pending::Pending;
 use maulstick_ui_kit::rows::{Number, Sliders, below, choice, note, row, wrong};
 
@@ -31,42 +33,10 @@ mod tracing;
 use film::FilmForm;
 use placement::Posture;
 
-const SIZING: Number<'_> = Number {
-    word: tr_noop!("Absorbency"),
-    hover: tr_noop!(
-        "Stain: thickness of the film that soaks in and cannot be wiped off, µm; thin on a heavily sized canvas"
-    ),
-    range: 0.0..=50.0,
-    unit: " µm",
-    decimals: 1,
-    factors: false,
-};
-const TILT: Number<'_> = Number {
-    word: tr_noop!("Tilt"),
-    hover: tr_noop!("How far its upper edge is raised, as on an easel, degrees"),
-    range: 0.0..=60.0,
-    unit: "°",
-    decimals: 0,
-    factors: false,
-};
-const TURN: Number<'_> = Number {
-    word: tr_noop!("Turn"),
-    hover: tr_noop!("How far it is turned to the left, degrees"),
-    range: -180.0..=180.0,
-    unit: "°",
-    decimals: 0,
-    factors: false,
-};
-const ZOOM: Number<'_> = Number {
-    word: tr_noop!("Zoom"),
-    hover: tr_noop!(
-        "How large it lies on the desk: 100 % is life size, and the brush stays as it is"
-    ),
-    range: 10.0..=1000.0,
-    unit: " %",
-    decimals: 0,
-    factors: true,
-};
+const SIZING: Number<'_> = Number::of::<StainThickness>(tr_noop!("Absorbency"), 1);
+const TILT: Number<'_> = Number::of::<Tilt>(tr_noop!("Tilt"), 0);
+const TURN: Number<'_> = Number::of::<Turn>(tr_noop!("Turn"), 0);
+const ZOOM: Number<'_> = Number::percent::<Zoom>(tr_noop!("Zoom"));
 
 /// Name of a flip among the steps of the history.
 const _: &str = tr_noop!("flip");
@@ -258,14 +228,14 @@ impl CanvasPanel {
         let now_s = ui.input(|input| input.time);
         let before = self.posture.shown(now_s, &Posture::of(canvas));
         let mut posture = before.clone();
-        for (number, value) in [
-            (&TILT, &mut posture.tilt_deg),
-            (&TURN, &mut posture.turn_deg),
-            (&ZOOM, &mut posture.percent),
-        ] {
-            let change = self.sliders.row(ui, number, *value);
-            *value = change.moved.unwrap_or(*value);
-        }
+        self.sliders.rows(
+            ui,
+            [
+                (&TILT, &mut posture.tilt_deg),
+                (&TURN, &mut posture.turn_deg),
+                (&ZOOM, &mut posture.zoom),
+            ],
+        );
         below(ui, |ui| {
             let keys = &work.preferences.keys;
             let hover = keys.hint(ui.ctx(), tr!("See the whole canvas"), &[Action::Fit]);

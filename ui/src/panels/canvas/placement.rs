@@ -13,8 +13,8 @@ pub(super) struct Posture {
     pub(super) tilt_deg: f64,
     /// Turn in its own plane, counter-clockwise, degrees.
     pub(super) turn_deg: f64,
-    /// Desk lengths per surface length, per cent.
-    pub(super) percent: f64,
+    /// Desk lengths per surface length.
+    pub(super) zoom: f64,
 }
 
 /// Rounds to thousandths, so that a requested value is recognised in the scene.
@@ -33,14 +33,14 @@ impl Posture {
         Self {
             tilt_deg: tidy(tilt.to_degrees()),
             turn_deg: tidy(atan2(across.y, across.x).to_degrees()),
-            percent: tidy(surface.zoom * 100.0),
+            zoom: (surface.zoom * 1e5).round() * 1e-5,
         }
     }
 
     /// Pose and zoom of the surface with this placement, its middle unmoved.
     #[must_use]
     pub(super) fn laid(&self, surface: &Surface) -> (Pose, f64) {
-        let zoom = self.percent * 1e-2;
+        let zoom = self.zoom;
         let [x, y] = surface
             .cells
             .map(|cells| 0.5 * f64::from(cells) * surface.cell_m);
@@ -80,7 +80,7 @@ mod tests {
         let posture = Posture {
             tilt_deg: 35.0,
             turn_deg: -20.0,
-            percent: 250.0,
+            zoom: 2.5,
         };
         let (pose, zoom) = posture.laid(&canvas);
         assert!(pose.is_valid());

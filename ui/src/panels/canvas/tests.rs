@@ -122,7 +122,7 @@ fn the_canvas_is_tilted_turned_and_zoomed_each_beside_the_others() {
     let (pose, zoom) = Posture {
         tilt_deg: 30.0,
         turn_deg: -15.0,
-        percent: 200.0,
+        zoom: 2.0,
     }
     .laid(&canvas);
     let asked = harness.state_mut().asked();

@@ -5,16 +5,10 @@ use maulstick_ui_kit::rows::{Number, Sliders, below};
 
 use crate::dialogs::paths;
 use crate::input::keys::Action;
+use crate::tracing::settings::TracingStrength;
 use crate::widgets::context::PanelContext;
 
-const STRENGTH: Number<'_> = Number {
-    word: tr_noop!("picture|Strength"),
-    hover: tr_noop!("How much of the tracing picture is seen; it is neither painted nor exported"),
-    range: 0.0..=100.0,
-    unit: " %",
-    decimals: 0,
-    factors: false,
-};
+const STRENGTH: Number<'_> = Number::percent::<TracingStrength>(tr_noop!("picture|Strength"));
 
 pub(super) fn show(ui: &mut Ui, work: &mut PanelContext<'_>, sliders: &mut Sliders) {
     let keys = &work.preferences.keys;
@@ -32,11 +26,11 @@ pub(super) fn show(ui: &mut Ui, work: &mut PanelContext<'_>, sliders: &mut Slide
     let hover = keys.hint(ui.ctx(), &path, &[Action::Tracing]);
     ui.checkbox(&mut shown, tr!("Show tracing picture"))
         .on_hover_text(hover);
-    let change = sliders.row(ui, &STRENGTH, 100.0 * f64::from(tracing.sound_strength()));
+    let change = sliders.row(ui, &STRENGTH, f64::from(tracing.sound_strength()));
     if let Some(own) = work.tracing_mut() {
         own.shown = shown;
-        if let Some(percent) = change.moved {
-            own.strength = (0.01 * percent) as f32;
+        if let Some(strength) = change.moved {
+            own.strength = strength as f32;
         }
     }
     below(ui, |ui| {

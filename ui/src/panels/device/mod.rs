@@ -18,12 +18,13 @@ mod test_page;
 pub(crate) mod tests;
 
 use eframe::egui::{
-    Align2, Button, Color32, FontId, Frame, Grid, Response, RichText, Role, Sense, Slider, Stroke,
-    Ui, WidgetInfo, pos2, vec2,
+    Align2, Button, Color32, FontId, Frame, Grid, Response, RichText, Role, Sense, Stroke, Ui,
+    WidgetInfo, pos2, vec2,
 };
 use egui_plot::{HLine, Line, LineStyle, Plot, PlotPoints};
 use maulstick_types::haptics::ForceOrder;
 use maulstick_types::stylus::{StylusInfo, StylusStatus, Trouble, axes};
+use maulstick_types::values::{ForceShare, GuidanceShare};
 
 use crate::input::keys::Action;
 use crate::panels::Panel;
@@ -32,6 +33,7 @@ use crate::widgets::context::PanelContext;
 use maulstick_client::force_history::{KEPT_S, size};
 use maulstick_client::state::Device;
 use maulstick_ui_kit::language::capitalized;
+use maulstick_ui_kit::rows::{Number, Sliders};
 use settings::Edits;
 
 /// Of the button that switches force off, and of a trouble.
@@ -44,14 +46,11 @@ const DIAL: f32 = 64.0;
 const OF_THE_WINDOW: [&str; 2] = ["pointer", "window"];
 /// A device of which nothing is heard for so long has left, ns.
 const PRESENT_NS: u64 = 3_000_000_000;
-/// A changed strength is shown for this long until the device has it, ns.
-const PATIENCE_NS: u64 = 700_000_000;
 
 /// The panel.
 #[derive(Debug, Default)]
 pub(crate) struct DevicePanel {
-    /// The device of which a share is being changed, the requested percentage, and the time until which it is shown, ns.
-    asked: Option<(String, Share, f64, u64)>,
+    sliders: Sliders,
     edits: Edits,
     /// The device whose test page is open.
     tested: Option<String>,
@@ -81,17 +80,17 @@ impl Share {
         }
     }
 
-    /// Name and hint.
-    fn words(self) -> [&'static str; 2] {
+    fn word(self) -> &'static str {
         match self {
-            Self::Strength => [
-                tr!("Strength"),
-                tr!("Share of the force that the brush asks for"),
-            ],
-            Self::Guidance => [
-                tr!("Guidance"),
-                tr!("How strongly the recorded strokes hold your hand"),
-            ],
+            Self::Strength => tr_noop!("Strength"),
+            Self::Guidance => tr_noop!("Guidance"),
+        }
+    }
+
+    fn number(self) -> Number<'static> {
+        match self {
+            Self::Strength => Number::percent::<ForceShare>(self.word()),
+            Self::Guidance => Number::percent::<GuidanceShare>(self.word()),
         }
     }
 }
@@ -265,25 +264,13 @@ impl DevicePanel {
         (share, status): (Share, &StylusStatus),
         work: &mut PanelContext<'_>,
     ) {
-        let now_ns = work.rig.live.now_ns;
-        let told = (100.0 * share.of(status)).round();
-        self.asked = self.asked.take().filter(|(.., until)| now_ns < *until);
-        let is_this = |asked: &&(String, Share, f64, u64)| asked.0 == name && asked.1 == share;
-        let asked = self.asked.as_ref().filter(is_this);
-        let mut percent = asked.map_or(told, |(_, _, percent, _)| *percent);
-        let [text, hint] = share.words();
-        let slider = Slider::new(&mut percent, 0.0..=100.0)
-            .integer()
-            .suffix(" %")
-            .text(text);
-        let response = ui.add(slider).on_hover_text(hint);
-        if response.changed() {
-            let order = share.order((percent / 100.0).clamp(0.0, 1.0));
-            work.requests.force(name, order);
-        }
-        if response.changed() || response.dragged() {
-            let until = now_ns.saturating_add(PATIENCE_NS);
-            self.asked = Some((name.to_owned(), share, percent, until));
+        let key = format!("{} of {name}", share.word());
+        let change = self
+            .sliders
+            .keyed(ui, &share.number(), &key, share.of(status));
+        if let Some(moved) = change.moved {
+            work.requests
+                .force(name, share.order(moved.clamp(0.0, 1.0)));
         }
     }
 }

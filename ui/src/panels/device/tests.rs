@@ -428,8 +428,7 @@ fn a_new_strength_is_asked_for_and_shown_until_the_device_has_it() {
     assert_eq!(value(&harness), Some((100.0 * share).round()));
     // The device has something else in the end.
     status(&mut harness).strength = 0.3;
-    harness.state_mut().rig.live.now_ns += PATIENCE_NS;
-    harness.run();
+    harness.run_steps(20);
     assert_eq!(value(&harness), Some(30.0));
 }
 

@@ -2,6 +2,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | [`outcome_words`] | what an edit has done, where that may be out of view |
 //! | `steps` | the last steps, to go back or forth to |
 //! | `tree` | versions as a tree |
 
@@ -22,6 +23,7 @@ use crate::panels::Panel;
 use crate::widgets::context::{PanelContext, ask};
 use maulstick_client::thumbnails::{Picture, Pictured};
 
+pub(crate) mod outcome_words;
 mod steps;
 mod tree;
 

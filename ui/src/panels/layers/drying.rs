@@ -4,10 +4,9 @@ use eframe::egui::{DragValue, ProgressBar, TextEdit, Ui};
 use maulstick_painting::clock::TICKS_A_SECOND;
 use maulstick_painting::edits::{Dry, StopDrying, Wet};
 use maulstick_types::Region;
-use maulstick_types::limits::DRYING_TICKS;
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::CANVAS;
-use maulstick_types::values::{LayerName, Share, Ticks, ValueError};
+use maulstick_types::values::{LayerName, Quantity, Share, Ticks, ValueError};
 use maulstick_ui_kit::rows::{Number, Sliders, choice, row};
 
 use super::region;
@@ -16,14 +15,7 @@ use crate::widgets::context::{PanelContext, ask};
 /// Choice of region.
 const PLACES: [&str; 2] = [tr_noop!("Whole canvas"), tr_noop!("A part")];
 
-const SHARE: Number<'_> = Number {
-    word: tr_noop!("How much"),
-    hover: tr_noop!("How much of the wet film dries, from below: 100 % leaves nothing wet"),
-    range: 1.0..=100.0,
-    unit: " %",
-    decimals: 0,
-    factors: false,
-};
+const SHARE: Number<'_> = Number::percent::<Share>(tr_noop!("How much"));
 
 /// A drying in progress.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +42,7 @@ fn drying(status: &PaintStatus) -> Option<Drying> {
 #[derive(Clone, Debug)]
 pub(super) struct DryingForm {
     sliders: Sliders,
-    percent: f64,
+    share: f64,
     name: String,
     /// The region; `None` for all of it.
     part: Option<Region>,
@@ -62,7 +54,7 @@ impl Default for DryingForm {
     fn default() -> Self {
         Self {
             sliders: Sliders::default(),
-            percent: 100.0,
+            share: 1.0,
             name: String::new(),
             part: None,
             time_s: 120.0,
@@ -78,8 +70,8 @@ fn checked(part: &Option<Region>) -> Result<(), ValueError> {
 impl DryingForm {
     /// Shows it; `layers` have dried so far.
     pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, layers: usize) {
-        let change = self.sliders.row(ui, &SHARE, self.percent);
-        self.percent = change.moved.unwrap_or(self.percent);
+        let change = self.sliders.row(ui, &SHARE, self.share);
+        self.share = change.moved.unwrap_or(self.share);
         row(ui, tr!("Name"), |ui| {
             let name = TextEdit::singleline(&mut self.name).hint_text(tr!("of the new layer"));
             ui.add(name.desired_width(f32::INFINITY))
@@ -100,7 +92,7 @@ impl DryingForm {
                 .button(tr!("Dry"))
                 .on_hover_text(tr!("Wet paint becomes a dry layer at once"));
             if dry.clicked() {
-                let share = Share::new((self.percent * 1e-2) as f32);
+                let share = Share::in_unit(self.share);
                 ask(work, share.and_then(|share| self.dry(share, None)));
                 self.name.clear();
             }
@@ -135,9 +127,8 @@ impl DryingForm {
     /// Drying while time goes by.
     fn in_time(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         row(ui, tr!("Dry over"), |ui| {
-            let most = f64::from(*DRYING_TICKS.end()) / f64::from(TICKS_A_SECOND);
             let time = DragValue::new(&mut self.time_s)
-                .range(1.0..=most)
+                .range(Ticks::USUAL)
                 .speed(1.0)
                 .custom_formatter(|seconds, _| clock(seconds))
                 .custom_parser(seconds);

@@ -28,14 +28,7 @@ mod region;
 const NAME: f32 = 92.0;
 const WAY: f32 = 84.0;
 
-const OPACITY: Number<'_> = Number {
-    word: tr_noop!("Opacity"),
-    hover: tr_noop!("How much the layer hides what lies below; its relief stays"),
-    range: 0.0..=100.0,
-    unit: " %",
-    decimals: 0,
-    factors: false,
-};
+const OPACITY: Number<'_> = Number::percent::<OpacityFactor>(tr_noop!("Opacity"));
 
 /// The panel.
 #[derive(Debug, Default)]
@@ -136,7 +129,7 @@ impl LayersPanel {
                     _ => self.title(ui, layer),
                 }
                 ui.spacing_mut().slider_width = WAY;
-                let shown = f64::from(layer.opacity) * 100.0;
+                let shown = f64::from(layer.opacity);
                 let (slider, change) =
                     self.sliders
                         .bare(ui, &OPACITY, &format!("opacity {number}"), shown);
@@ -148,8 +141,8 @@ impl LayersPanel {
                     )
                 });
                 // All layers above are computed anew, and an opacity is a step to undo: once is enough.
-                if let Some(percent) = change.settled {
-                    self.ask(now_s, work, (number, (percent * 1e-2) as f32));
+                if let Some(opacity) = change.settled {
+                    self.ask(now_s, work, (number, opacity as f32));
                 }
             });
         });

@@ -12,7 +12,7 @@ use eframe::egui::{CollapsingHeader, TextEdit, TextureHandle, TextureOptions, Ui
 use maulstick_appearance::light::changes_colour;
 use maulstick_optics::cie::ILLUMINANTS;
 use maulstick_painting::edits::Relight;
-use maulstick_types::scene::{Light, RULES, SAMPLES};
+use maulstick_types::scene::{Exposure, Intensity, Light, RULES, Relief, Softness, Wavelengths};
 use maulstick_types::values::ValueError;
 use maulstick_ui_kit::pending::Pending;
 use maulstick_ui_kit::rows::{Number, Sliders, below, choice, note, row, wrong};
@@ -37,46 +37,11 @@ const LIKE: [&str; ILLUMINANTS.len()] = [
 /// Years of the observers.
 const OBSERVERS: [(&str, u32); 2] = [("1931, 2°", 1931), ("1964, 10°", 1964)];
 
-const STRENGTH: Number<'_> = Number {
-    word: tr_noop!("Strength"),
-    hover: tr_noop!("How strong the lamp is; 1 as it was built"),
-    range: 0.1..=10.0,
-    unit: "",
-    decimals: 2,
-    factors: true,
-};
-const EXPOSURE: Number<'_> = Number {
-    word: tr_noop!("Exposure"),
-    hover: tr_noop!("How much of the light the eye takes"),
-    range: 0.1..=10.0,
-    unit: "",
-    decimals: 2,
-    factors: true,
-};
-const RELIEF: Number<'_> = Number {
-    word: tr_noop!("Relief"),
-    hover: tr_noop!("How strongly brush marks stand out; 1 as they are, 0 flat"),
-    range: 0.0..=5.0,
-    unit: "",
-    decimals: 2,
-    factors: false,
-};
-const SOFTNESS: Number<'_> = Number {
-    word: tr_noop!("Softness"),
-    hover: tr_noop!("How large the lamp is: 0 casts sharp shadows, 1 soft ones"),
-    range: 0.0..=1.0,
-    unit: "",
-    decimals: 2,
-    factors: false,
-};
-const WAVELENGTHS: Number<'_> = Number {
-    word: tr_noop!("Samples"),
-    hover: tr_noop!("Wavelengths that are computed"),
-    range: *SAMPLES.start() as f64..=*SAMPLES.end() as f64,
-    unit: "",
-    decimals: 0,
-    factors: false,
-};
+const STRENGTH: Number<'_> = Number::of::<Intensity>(tr_noop!("Strength"), 2);
+const EXPOSURE: Number<'_> = Number::of::<Exposure>(tr_noop!("Exposure"), 2);
+const RELIEF: Number<'_> = Number::of::<Relief>(tr_noop!("Relief"), 2);
+const SOFTNESS: Number<'_> = Number::of::<Softness>(tr_noop!("Softness"), 2);
+const WAVELENGTHS: Number<'_> = Number::of::<Wavelengths>(tr_noop!("Samples"), 0);
 
 /// The panel.
 #[derive(Default)]
@@ -109,13 +74,13 @@ impl Panel for LightPanel {
         let mut light = before.clone();
         let mut expose = self.lamp(ui, &mut light);
         self.spectrum(ui, &mut light);
-        for (number, value) in [
-            (&RELIEF, &mut light.relief),
-            (&SOFTNESS, &mut light.softness),
-        ] {
-            let change = self.sliders.row(ui, number, *value);
-            *value = change.moved.unwrap_or(*value);
-        }
+        self.sliders.rows(
+            ui,
+            [
+                (&RELIEF, &mut light.relief),
+                (&SOFTNESS, &mut light.softness),
+            ],
+        );
         CollapsingHeader::new(tr!("Advanced colour")).show(ui, |ui| self.research(ui, &mut light));
         if light == before && !expose {
             return;
@@ -145,10 +110,13 @@ impl LightPanel {
             }
             note(ui, pad::words(light.direction));
         });
-        let change = self.sliders.row(ui, &STRENGTH, light.intensity);
-        light.intensity = change.moved.unwrap_or(light.intensity);
-        let change = self.sliders.row(ui, &EXPOSURE, light.exposure);
-        light.exposure = change.moved.unwrap_or(light.exposure);
+        self.sliders.rows(
+            ui,
+            [
+                (&STRENGTH, &mut light.intensity),
+                (&EXPOSURE, &mut light.exposure),
+            ],
+        );
         below(ui, |ui| {
             let button = ui.button(tr!("Auto exposure"));
             let button =

@@ -12,7 +12,7 @@ mod sets;
 mod wells;
 
 use eframe::egui::{ComboBox, TextEdit, Ui};
-use maulstick_ui_kit::labelled;
+use maulstick_ui_kit::rows::row;
 use maulstick_ui_kit::swatches::Swatches;
 
 use crate::panels::Panel;
@@ -45,8 +45,9 @@ impl Panel for PaintsPanel {
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let edit = TextEdit::singleline(&mut self.search)
             .hint_text(tr!("Blue, or PB29"))
-            .desired_width(190.0);
-        labelled::named(ui, tr!("Search"), tr!("By name, or by colour index."), edit);
+            .desired_width(f32::INFINITY);
+        row(ui, tr!("Search"), |ui| ui.add(edit))
+            .on_hover_text(tr!("By name, or by colour index."));
         self.choose_set(ui, work);
         rows::show(self, ui, work);
         ui.separator();
@@ -65,30 +66,23 @@ impl PaintsPanel {
         if sets.is_empty() {
             return;
         }
-        ui.horizontal(|ui| {
-            let name = labelled::label(
-                ui,
-                tr!("Set"),
-                tr!("Which tubes are shown: all, or a set of your own."),
-            );
-            let shown = self
-                .set
-                .clone()
-                .unwrap_or_else(|| tr!("All tubes").to_owned());
-            ComboBox::from_id_salt("set")
-                .width(150.0)
+        let all = tr!("All tubes");
+        let shown = self.set.clone().unwrap_or_else(|| all.to_owned());
+        row(ui, tr!("Set"), |ui| {
+            let combo = ComboBox::from_id_salt("set")
+                .width(ui.available_width())
                 .truncate()
-                .selected_text(shown)
-                .show_ui(ui, |ui| {
-                    ui.selectable_value(&mut self.set, None, tr!("All tubes"));
-                    for set in sets {
-                        let value = Some(set.name.clone());
-                        ui.selectable_value(&mut self.set, value, &set.name);
-                    }
-                })
-                .response
-                .labelled_by(name.id);
-        });
+                .selected_text(shown);
+            let shown = combo.show_ui(ui, |ui| {
+                ui.selectable_value(&mut self.set, None, all);
+                for set in sets {
+                    let value = Some(set.name.clone());
+                    ui.selectable_value(&mut self.set, value, &set.name);
+                }
+            });
+            shown.response
+        })
+        .on_hover_text(tr!("Which tubes are shown: all, or a set of your own."));
     }
 }
 

@@ -78,9 +78,9 @@ pub(super) fn show(panel: &mut PaintsPanel, ui: &mut Ui, work: &mut PanelContext
                 .preferences
                 .brushes
                 .loading
-                .edit(&brush, &work.rig.library);
+                .command(&brush, &work.rig.library);
             match load {
-                Ok(load) => work.then(load.into()),
+                Ok(load) => work.then(load),
                 Err(fault) => work.notifications.of(&fault),
             }
         }

@@ -1,7 +1,7 @@
 //! The painter's own sets of paints.
 
 use eframe::egui::{Key, TextEdit, Ui};
-use maulstick_ui_kit::labelled;
+use maulstick_ui_kit::rows::{row, wrong};
 
 use crate::settings::paint_sets::PaintSet;
 use crate::settings::presets::check_name;
@@ -37,9 +37,9 @@ impl SetRows {
         self.bring_back(ui, work);
         let edit = TextEdit::singleline(&mut self.name)
             .hint_text(tr!("Portrait"))
-            .desired_width(190.0);
+            .desired_width(f32::INFINITY);
         let hover = tr!("What the paints on the palette are to be called as a set.");
-        let field = labelled::named(ui, tr!("Name"), hover, edit);
+        let field = row(ui, tr!("Name"), |ui| ui.add(edit)).on_hover_text(hover);
         if field.changed() {
             self.wrong = None;
         }
@@ -61,7 +61,7 @@ impl SetRows {
             }
         });
         if let Some(what) = &self.wrong {
-            labelled::wrong(ui, what);
+            wrong(ui, what);
         }
     }
 
@@ -125,7 +125,7 @@ impl SetRows {
                 Some(name)
             }
             Err(what) => {
-                self.wrong = Some(what);
+                self.wrong = Some(what.words());
                 None
             }
         }

@@ -1,22 +1,19 @@
 //! Wells of the palette from the top: remove, replace, reorder.
 
 use eframe::egui::{
-    Align, Button, Color32, Key, Layout, Rect, Response, Role, Sense, Stroke, TextEdit, Ui,
-    WidgetInfo, vec2,
+    Align, Button, Color32, Layout, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, vec2,
 };
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_rig::UserError;
 use maulstick_types::Mixture;
-use maulstick_ui_kit::labelled;
 use maulstick_ui_kit::swatches::{Swatches, draw};
 
 use super::{Carried, SWATCH};
 use crate::panels::paints::palette_wells::MOST;
-use crate::settings::brush_load::{self, completed, completions, words};
+use crate::settings::brush_load::{self, words};
 use crate::widgets::context::PanelContext;
+use crate::widgets::mixture_field;
 
-/// Names that are proposed at most.
-const PROPOSED: usize = 4;
 /// Width and height of a button with a sign, points.
 const SIGN: f32 = 20.0;
 
@@ -142,27 +139,11 @@ impl WellRows {
 
     /// A mixture of one's own for a well.
     fn field(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, count: usize) {
-        let edit = TextEdit::singleline(&mut self.text)
-            .hint_text("2 Cobalt Blue, 1 …")
-            .char_limit(4096)
-            .desired_width(190.0);
         let hover = tr!("A paint's name, or a mixture such as Cobalt Blue=0.7,Titanium White=0.3");
-        let shown = labelled::named(ui, tr!("Mixture"), hover, edit);
+        let words = (tr!("Mixture"), hover);
+        let (shown, enter) = mixture_field::show(ui, words, &mut self.text, &work.rig.library);
         if shown.changed() {
             self.fault = None;
-        }
-        let enter = shown.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-        let names = completions(&self.text, &work.rig.library, PROPOSED);
-        if !names.is_empty() {
-            ui.horizontal_wrapped(|ui| {
-                ui.add_space(8.0);
-                for proposed in names {
-                    if ui.small_button(proposed).clicked() {
-                        self.text = completed(&self.text, proposed);
-                        shown.request_focus();
-                    }
-                }
-            });
         }
         let words = match self.chosen {
             Some(place) => tr!("Into well {number}", number = place + 1),
@@ -187,10 +168,7 @@ impl WellRows {
             }
         }
         if let Some(fault) = &self.fault {
-            labelled::wrong(ui, &fault.what);
-            if let Some(help) = &fault.help {
-                ui.label(help);
-            }
+            mixture_field::fault(ui, fault);
         }
     }
 }

@@ -138,15 +138,7 @@ impl BrushRenderer {
         let mut cast = |plane: &Plane, on: On, shapes: &mut Vec<Shape>| {
             let to_plane = plane.to_desk.inverse();
             let there = |p: DVec3| to_plane.point(on_desk(p));
-            let turned = |v: DVec3| to_plane.vector(held.plane.to_desk.vector(v));
-            let sections: Vec<Section> = sections
-                .iter()
-                .map(|section| Section {
-                    at: there(section.at),
-                    half: section.half.map(turned),
-                    ..*section
-                })
-                .collect();
+            let sections = held.sections_on(plane, sections);
             let to_window = |p: DVec3| below.view.to_window(plane.to_desk.point(p));
             let projection = Projection {
                 view: below.view,
@@ -167,10 +159,7 @@ impl BrushRenderer {
                 if !chain.is_visible() || !reaches {
                     continue;
                 }
-                if kept.slots.len() == slots {
-                    kept.slots.push(self.passes.slot(gpu));
-                }
-                let slot = &mut kept.slots[slots];
+                let slot = kept.slot(slots, || self.passes.slot(gpu));
                 slots += 1;
                 let drawn = self
                     .passes
@@ -189,7 +178,28 @@ impl BrushRenderer {
     }
 }
 
+impl BrushPose<'_> {
+    /// Sections of the handle in the frame of another surface.
+    fn sections_on(&self, plane: &Plane, sections: &[Section]) -> Vec<Section> {
+        let (to_plane, to_desk) = (plane.to_desk.inverse(), &self.plane.to_desk);
+        let there = |section: &Section| Section {
+            at: to_plane.point(to_desk.point(section.at)),
+            half: section.half.map(|v| to_plane.vector(to_desk.vector(v))),
+            ..*section
+        };
+        sections.iter().map(there).collect()
+    }
+}
+
 impl Kept {
+    /// The slot of a number, at most one more than there are.
+    fn slot(&mut self, number: usize, new: impl FnOnce() -> ShadowSlot) -> &mut ShadowSlot {
+        if self.slots.len() == number {
+            self.slots.push(new());
+        }
+        &mut self.slots[number]
+    }
+
     /// The paint on the brush as the display takes it.
     fn tinted(
         &mut self,

@@ -11,10 +11,11 @@ use maulstick_types::paint::TILE;
 
 use super::tests::{lamp, surface as small};
 use super::*;
-use crate::render::frames::{ShownTile, texels};
 use crate::render::gpu::testing::{draw, gpu, read, target};
-use crate::render::tile_planner::{Asked, AtlasState, TilePlanner};
-use crate::view::visible_tiles::{TileRect, Wanted};
+use crate::view::visible_tiles::{cells_of, wanted_by};
+use maulstick_client::frames::tile_planner::{Asked, AtlasState, TilePlanner};
+use maulstick_client::frames::tiles::{TileRect, Wanted};
+use maulstick_client::frames::{ShownTile, texels};
 
 const CELLS: [u32; 2] = [2100, 1700];
 const VIEW: [u32; 2] = [240, 180];
@@ -119,7 +120,7 @@ impl Puller {
     }
 
     fn settle(&mut self, easel: &Easel, look: &View) {
-        let wanted = Wanted::of(&easel.surface, look, 1.0);
+        let wanted = wanted_by(&easel.surface, look, 1.0);
         while !self.turn(easel, &wanted, |_| {}).waits {}
     }
 }
@@ -213,7 +214,7 @@ fn a_view_that_is_panned_zoomed_and_turned_shows_the_pixels_of_a_whole_sheet() {
         assert!(off <= 1, "{scale} {around:?} {turn}: {off} of 255");
         // A tile that did not come.
         let mut broken = Puller::default();
-        let wanted = Wanted::of(&easel.surface, &look, 1.0);
+        let wanted = wanted_by(&easel.surface, &look, 1.0);
         for _ in 0..4 {
             broken.turn(&easel, &wanted, |tile| tile.colour.rotate_right(16));
         }
@@ -234,7 +235,7 @@ fn what_has_not_come_yet_is_shown_coarse_without_a_hole_or_a_seam() {
     let after = look(&easel.surface, 1.0, [1160.0, 880.0]);
     let fine = easel.whole(0, &after);
     let shown = easel.drawn(&mut puller.view, &after);
-    let held = puller.plan.atlas(Part::Detail).held.cells(CELLS);
+    let held = cells_of(&puller.plan.atlas(Part::Detail).held, CELLS);
     let edge = |i: usize| (held.from[i] + held.size[i] - (REACH + 1)) as f32;
     let origin = [1160.0 - 120.0, 880.0 + 90.0];
     let (right, top) = (edge(0) - origin[0], origin[1] - edge(1));
@@ -256,7 +257,7 @@ fn what_has_not_come_yet_is_shown_coarse_without_a_hole_or_a_seam() {
     assert!(outside < 60, "{outside}");
     assert!(coarse > 500, "the detail covers all");
     // With the strips it is whole.
-    let wanted = Wanted::of(&easel.surface, &after, 1.0);
+    let wanted = wanted_by(&easel.surface, &after, 1.0);
     while !puller.turn(&easel, &wanted, |_| {}).waits {}
     assert!(farthest(&easel.drawn(&mut puller.view, &after), &fine) <= 1);
     assert!(farthest(&shown, &fine) > 1, "a fault would pass");
@@ -275,7 +276,7 @@ fn textures_are_bounded_by_the_window() {
             scale: scale / large.cell_m,
             ..fit
         };
-        let wanted = Wanted::of(&large, &look, 1.0);
+        let wanted = wanted_by(&large, &look, 1.0);
         let atlases = [
             (Part::Base, wanted.base, wanted.base_tiles),
             (Part::Detail, Some(wanted.level), wanted.room),

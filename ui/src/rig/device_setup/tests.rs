@@ -1,5 +1,6 @@
 //! With functions in the place of those of the set-up.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use maulstick_device::corner_calibration::Corner;
@@ -48,6 +49,21 @@ fn fit_forever(_: &FitSettings<'_>, stop: &Stop, report: Report<'_>) -> Result<F
     }
     report(FitEvent::Unwritten)?;
     Ok(FitEnd::Stopped)
+}
+
+/// Fits whose device was put back.
+static PUT_BACK: AtomicUsize = AtomicUsize::new(0);
+
+/// As [`fit_forever`], of a device that takes a while to be put back.
+fn fit_and_put_back(
+    settings: &FitSettings<'_>,
+    stop: &Stop,
+    report: Report<'_>,
+) -> Result<FitEnd, UserError> {
+    let end = fit_forever(settings, stop, report);
+    (0..10_000).for_each(|_| std::thread::yield_now());
+    PUT_BACK.fetch_add(1, Ordering::SeqCst);
+    end
 }
 
 struct Desk {
@@ -161,4 +177,20 @@ fn a_fit_says_what_to_touch_until_it_is_stopped() {
     desk.until(|desk| desk.rig.setup.fit.is_none());
     let unwritten = fit_event(&FitEvent::Unwritten);
     assert_eq!(desk.shown, [(Severity::Note, unwritten)]);
+}
+
+#[test]
+fn a_fit_puts_the_device_back_before_the_window_is_gone() {
+    let mut desk = Desk::new();
+    desk.runner.functions.fit = fit_and_put_back;
+    desk.poll(vec![DeviceOrder::Fit("arm".into())], false);
+    desk.until(|desk| {
+        desk.rig
+            .setup
+            .fit
+            .as_ref()
+            .is_some_and(|fit| !fit.events.is_empty())
+    });
+    drop(desk.runner);
+    assert_eq!(PUT_BACK.load(Ordering::SeqCst), 1);
 }

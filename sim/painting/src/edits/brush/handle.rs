@@ -2,7 +2,9 @@
 
 use maulstick_types::EditFields;
 use maulstick_types::scene::{BrushHandling, BrushMode, MARKER_FLOW};
-use maulstick_types::values::{BrushName, FilmThickness, MarkerFlow, ValueError};
+#[cfg(feature = "cli")]
+use maulstick_types::values::Quantity as _;
+use maulstick_types::values::{BrushName, FilmLimit, MarkerFlow, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
 use crate::error::EditError;
@@ -15,20 +17,20 @@ pub struct Handle {
     /// Mode: normal, no-push, sponge, sponge-no-push, marker, sampler or vacuum
     #[serde(deserialize_with = "read::text")]
     pub mode: BrushMode,
-    /// Flow of the marker, µm of paint per mm of its path
+    /// Flow of the marker
     #[serde(default)]
     #[cfg_attr(
         feature = "cli",
-        arg(long, value_name = "UM_PER_MM", allow_negative_numbers = true)
+        arg(long, value_name = "UM_PER_MM", help = MarkerFlow::option_help(), allow_negative_numbers = true)
     )]
     pub flow: Option<MarkerFlow>,
-    /// Add no paint where the wet film is this thick, µm
+    /// Limit of the wet film
     #[serde(default, alias = "most_um")]
     #[cfg_attr(
         feature = "cli",
-        arg(long = "most-um", value_name = "UM", allow_negative_numbers = true)
+        arg(long = "most-um", value_name = "UM", help = FilmLimit::option_help(), allow_negative_numbers = true)
     )]
-    pub most: Option<FilmThickness>,
+    pub most: Option<FilmLimit>,
     /// Brush of the rig
     #[serde(default)]
     #[cfg_attr(feature = "cli", arg(long, default_value = "main"))]
@@ -41,7 +43,7 @@ impl From<Handle> for BrushHandling {
             brush: edit.brush.into(),
             mode: edit.mode,
             flow: edit.flow.map_or(MARKER_FLOW, MarkerFlow::get),
-            most_m: edit.most.map_or(0.0, FilmThickness::get),
+            most_m: edit.most.map_or(0.0, FilmLimit::get),
         }
     }
 }
@@ -50,7 +52,7 @@ impl TryFrom<&BrushHandling> for Handle {
     type Error = ValueError;
 
     fn try_from(handling: &BrushHandling) -> Result<Self, ValueError> {
-        let most = (handling.most_m != 0.0).then(|| FilmThickness::new(handling.most_m));
+        let most = (handling.most_m != 0.0).then(|| FilmLimit::new(handling.most_m));
         Ok(Self {
             mode: handling.mode.clone(),
             flow: Some(MarkerFlow::new(handling.flow)?),
@@ -80,7 +82,7 @@ impl Form for Handle {
         Ok(Self {
             mode: BrushMode::Marker,
             flow: Some(MarkerFlow::in_unit(4.0)?),
-            most: Some(FilmThickness::in_unit(60.0)?),
+            most: Some(FilmLimit::in_unit(60.0)?),
             brush: BrushName::main(),
         })
     }

@@ -3,6 +3,8 @@
 use maulstick_optics::thinned;
 use maulstick_types::EditFields;
 use maulstick_types::scene::CANVAS;
+#[cfg(feature = "cli")]
+use maulstick_types::values::Quantity as _;
 use maulstick_types::values::{BrushName, Distance, ThinnerShare, ValueError};
 use serde::{Deserialize as _, Deserializer};
 
@@ -33,8 +35,8 @@ pub struct LoadFrom {
     /// Surface: 0 for the canvas, 1 for the palette
     #[cfg_attr(feature = "cli", arg(long, value_name = "NUMBER", default_value_t = CANVAS))]
     pub surface: u32,
-    /// Share of thinner that is added, 0 to .95
-    #[cfg_attr(feature = "cli", arg(long, value_name = "SHARE", default_value_t = ThinnerShare::NONE))]
+    /// Share of thinner that is added
+    #[cfg_attr(feature = "cli", arg(long, help = ThinnerShare::option_help(), value_name = "SHARE", default_value_t = ThinnerShare::NONE))]
     pub thinner: ThinnerShare,
     /// Brush of the rig
     #[cfg_attr(feature = "cli", arg(long, default_value = "main"))]

@@ -2,6 +2,8 @@
 
 use maulstick_types::EditFields;
 use maulstick_types::scene::Tuning;
+#[cfg(feature = "cli")]
+use maulstick_types::values::Quantity as _;
 use maulstick_types::values::{BrushName, Stiffness, ValueError, Wetness};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
@@ -15,13 +17,13 @@ pub struct Tune {
     /// Factor on the stiffness in the brush file
     #[cfg_attr(
         feature = "cli",
-        arg(long, default_value = "1", allow_negative_numbers = true)
+        arg(long, help = Stiffness::option_help(), default_value = "1", allow_negative_numbers = true)
     )]
     pub stiffness: Stiffness,
-    /// Wetness, from 0 (as in the brush file) to 1 (soaked: half as stiff)
+    /// Wetness of its head
     #[cfg_attr(
         feature = "cli",
-        arg(long, default_value = "0", allow_negative_numbers = true)
+        arg(long, help = Wetness::option_help(), default_value = "0", allow_negative_numbers = true)
     )]
     pub wetness: Wetness,
     /// Brush of the rig

@@ -2,6 +2,8 @@
 
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::CANVAS;
+#[cfg(feature = "cli")]
+use maulstick_types::values::Quantity as _;
 use maulstick_types::values::{LayerName, Share, Ticks, ValueError};
 use maulstick_types::{EditFields, Region};
 
@@ -14,11 +16,11 @@ use crate::painting::Painting;
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Dry {
-    /// Share of the wet film to dry, from below, above 0 to 1
+    /// Share of the wet film to dry, from below
     #[serde(alias = "dry")]
     #[cfg_attr(
         feature = "cli",
-        arg(long, default_value = "1", allow_negative_numbers = true)
+        arg(long, help = Share::option_help(), default_value = "1", allow_negative_numbers = true)
     )]
     pub share: Share,
     /// Name of the new layer [default: its number]

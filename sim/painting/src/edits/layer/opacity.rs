@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
+#[cfg(feature = "cli")]
+use maulstick_types::values::Quantity as _;
 use maulstick_types::values::{LayerName, OpacityFactor, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
@@ -76,8 +78,8 @@ pub struct Opacity {
     /// Name or number of the layer
     #[serde(deserialize_with = "named")]
     pub layer: LayerRef,
-    /// Factor on its optical thickness, 0 to 1; its height does not change
-    #[cfg_attr(feature = "cli", arg(allow_negative_numbers = true))]
+    /// Factor on its optical thickness; its height does not change
+    #[cfg_attr(feature = "cli", arg(help = OpacityFactor::option_help(), allow_negative_numbers = true))]
     pub opacity: OpacityFactor,
 }
 

@@ -178,6 +178,7 @@ mod cli {
     use super::{BrushName, Fill, FillPaint, FilmThickness, Mixture};
     use crate::edits::read;
     use maulstick_types::Edit;
+    use maulstick_types::values::Quantity as _;
 
     /// Lay a film of wet paint over the canvas
     #[derive(clap::Args)]
@@ -188,8 +189,7 @@ mod cli {
         /// Use the mean colour of the paint on this brush instead
         #[arg(long, value_name = "BRUSH")]
         with_brush: Option<BrushName>,
-        /// Thickness of the film, µm
-        #[arg(long, default_value = "50", allow_negative_numbers = true)]
+        #[arg(long, help = FilmThickness::option_help(), default_value = "50", allow_negative_numbers = true)]
         um: FilmThickness,
         /// Use the palette instead of the canvas
         #[arg(long = "palette", action = clap::ArgAction::SetTrue, value_parser = read::surface())]

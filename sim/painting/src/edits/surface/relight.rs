@@ -1,7 +1,9 @@
 //! Changes the light, or how it becomes colour.
 
 use maulstick_types::EditFields;
-use maulstick_types::scene::{Light, LightError};
+use maulstick_types::scene::{self, Light, LightError};
+#[cfg(feature = "cli")]
+use maulstick_types::values::Quantity as _;
 use maulstick_types::values::ValueError;
 use serde::de::{Deserialize, Deserializer, Error};
 
@@ -39,16 +41,16 @@ pub struct LightChange {
     #[cfg_attr(feature = "cli", arg(long, value_name = "X,Y,Z", value_parser = three, allow_hyphen_values = true))]
     pub direction: Option<[f64; 3]>,
     /// Factor on the strength of the light
-    #[cfg_attr(feature = "cli", arg(long, allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, help = scene::Intensity::option_help(), allow_negative_numbers = true))]
     pub intensity: Option<f64>,
     /// Exposure; auto: the bare canvas just does not clip. Another spectrum starts with auto
     #[cfg_attr(feature = "cli", arg(long, value_name = "FACTOR|auto", value_parser = exposure, allow_negative_numbers = true))]
     pub exposure: Option<Exposure>,
     /// Factor on the slopes of the relief
-    #[cfg_attr(feature = "cli", arg(long, allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, help = scene::Relief::option_help(), allow_negative_numbers = true))]
     pub relief: Option<f64>,
-    /// Softness of shadows: tangent of half the angle under which the lamp is seen
-    #[cfg_attr(feature = "cli", arg(long, allow_negative_numbers = true))]
+    /// Softness of shadows
+    #[cfg_attr(feature = "cli", arg(long, help = scene::Softness::option_help(), allow_negative_numbers = true))]
     pub softness: Option<f64>,
     /// CIE observer
     #[cfg_attr(feature = "cli", arg(long, value_name = "1931|1964"))]
@@ -56,8 +58,8 @@ pub struct LightChange {
     /// Wavelength rule: fitted, gauss, reference
     #[cfg_attr(feature = "cli", arg(long))]
     pub rule: Option<String>,
-    /// Number of wavelengths, 4 to 16
-    #[cfg_attr(feature = "cli", arg(long))]
+    /// Number of wavelengths
+    #[cfg_attr(feature = "cli", arg(long, help = scene::Wavelengths::option_help()))]
     pub samples: Option<u32>,
     /// Adapt colours to the white of the light (white balance)
     #[cfg_attr(feature = "cli", arg(long = "adapt", value_name = "true|false"))]

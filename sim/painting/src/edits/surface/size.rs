@@ -2,6 +2,8 @@
 
 use maulstick_types::EditFields;
 use maulstick_types::scene::CANVAS;
+#[cfg(feature = "cli")]
+use maulstick_types::values::Quantity as _;
 use maulstick_types::values::{StainThickness, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
@@ -12,11 +14,11 @@ use crate::painting::Painting;
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Size {
-    /// Thickness of paint that cannot be brushed off, µm; 0: a well-sized canvas
+    /// Thickness of paint that cannot be brushed off
     #[serde(alias = "stain_um")]
     #[cfg_attr(
         feature = "cli",
-        arg(value_name = "STAIN_UM", allow_negative_numbers = true)
+        arg(value_name = "STAIN_UM", help = StainThickness::option_help(), allow_negative_numbers = true)
     )]
     pub stain: StainThickness,
     /// The surface.

@@ -1,5 +1,7 @@
 //! What an edit has done, for the notification of one whose effect may be out of view.
 
+use maulstick_painting::edits::{Dry, GoTo, LoadFrom, Redo, Scrape, Undo};
+use maulstick_types::EditFields as _;
 use maulstick_types::command::{Command, Detail};
 use maulstick_ui_kit::language::{layer_name, step, translated};
 
@@ -8,17 +10,17 @@ use maulstick_client::request::Request;
 
 /// Edits whose effect may be out of view, by their names.
 const PAST_TENSES: [(&str, &str); 6] = [
-    ("undo", tr_noop!("Undone")),
-    ("redo", tr_noop!("Redone")),
-    ("go_to", tr_noop!("Now")),
-    ("dry", tr_noop!("Dried")),
-    ("load_from", tr_noop!("Loaded")),
-    ("scrape", tr_noop!("Scraped")),
+    (Undo::NAME, tr_noop!("Undone")),
+    (Redo::NAME, tr_noop!("Redone")),
+    (GoTo::NAME, tr_noop!("Now")),
+    (Dry::NAME, tr_noop!("Dried")),
+    (LoadFrom::NAME, tr_noop!("Loaded")),
+    (Scrape::NAME, tr_noop!("Scraped")),
 ];
 
 /// A request that is done, and what it was about; `None` for one whose effect is seen.
 #[must_use]
-pub(super) fn done(request: &Request, detail: &Detail) -> Option<String> {
+pub(crate) fn done(request: &Request, detail: &Detail) -> Option<String> {
     let done = past_tense(request)?;
     Some(match told(detail) {
         Some(told) => format!("{done}: {told}"),

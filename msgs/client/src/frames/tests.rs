@@ -1,12 +1,10 @@
 use half::f16;
-use maulstick_appearance::display::DisplayTile;
-
 use maulstick_bus::typed::Reader;
 use maulstick_bus::{Faults, MemoryNet, Request, Server};
 use maulstick_types::paint::{FrameReply, FrameTile};
 
 use super::*;
-use crate::view::visible_tiles::TileRect;
+use crate::frames::tiles::TileRect;
 
 const PAINT: Origin = Origin {
     source: 1,
@@ -185,38 +183,11 @@ fn a_paint_node_of_another_version_is_a_fault_until_it_is_gone() {
 }
 
 #[test]
-fn texels_are_the_planes_of_a_tile() {
-    let plane = |from: f32| (0..TILE_CELLS).map(|i| from + i as f32 / 8192.0).collect();
-    let tile = DisplayTile {
-        rgb: [plane(0.0), plane(1.0), plane(2.0)],
-        gloss: plane(0.5),
-        wetness: plane(7.0),
-        height: plane(0.25),
-    };
-    let (colour, height) = texels(&tile.to_bytes()).expect("whole");
-    let half = |place: usize| f16::from_le_bytes([colour[2 * place], colour[2 * place + 1]]);
-    for cell in [0, 1, 64, 4095] {
-        let texel = [0, 1, 2, 3].map(|channel| half(4 * cell + channel).to_f32());
-        let planes = [&tile.rgb[0], &tile.rgb[1], &tile.rgb[2], &tile.gloss];
-        for (got, plane) in texel.iter().zip(planes) {
-            assert!((got - plane[cell]).abs() < 2e-3, "{cell}: {texel:?}");
-        }
-        assert_eq!(height[4 * cell..][..4], tile.height[cell].to_le_bytes());
-    }
-    assert_eq!(texels(&tile.to_bytes()[1..]), None);
-}
-
-#[test]
 fn wet_paint_is_tinted_and_dry_paint_is_not() {
-    let plane = |value: f32| vec![value; TILE_CELLS];
-    let mut tile = DisplayTile {
-        rgb: [plane(0.5), plane(0.5), plane(0.5)],
-        gloss: plane(0.25),
-        wetness: plane(0.0),
-        height: plane(0.0),
-    };
-    tile.wetness[7] = 1.0;
-    let planes = tile.to_bytes();
+    let plane = |value: f32| f16::from_f32(value).to_le_bytes().repeat(TILE_CELLS);
+    let mut planes = [0.5, 0.5, 0.5, 0.25, 0.0].map(plane).concat();
+    planes.extend([0; 4 * TILE_CELLS]);
+    planes[WETNESS + 14..][..2].copy_from_slice(&f16::ONE.to_le_bytes());
     let (mut colour, _) = texels(&planes).expect("whole");
     let dry = colour.clone();
     tint_wet(&mut colour, &planes);

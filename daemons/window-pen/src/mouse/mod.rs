@@ -1,7 +1,14 @@
-//! The mouse as a stylus of lowest priority.
+//! The mouse over the window as a stylus of lowest priority.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`grip`] | how it holds the brush |
+//! | [`brush_turn`] | turn of the brush over a stroke |
+//! | `pixel_path` | its path without the steps of whole pixels |
 //!
 //! A tablet reaches the rig twice, by its daemon and as the pointer: the mouse counts only while no
-//! other stylus has been in range for a second.
+//! other stylus has been in range for a second. It has neither twist nor pressure: its brush is set down across the stroke
+//! once 2.5 mm or 80 ms have shown its direction, then follows as if drawn by a string.
 
 use maulstick_brush::model::BRIDGED_NS;
 use maulstick_bus::credit::Stamp;
@@ -12,6 +19,10 @@ use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusInfo, StylusPose, StylusSa
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin};
 
+pub mod brush_turn;
+pub mod grip;
+mod pixel_path;
+
 /// Another stylus in range silences the mouse for this long, ns.
 const SILENCE_NS: u64 = 1_000_000_000;
 /// Longest frame while no button is pressed, ns; a longer time is a pause.
@@ -19,7 +30,7 @@ const FRAME_NS: u64 = 90_000_000;
 
 /// Position of the pointer on the desk, its button, and the turn of the brush there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Pointer {
+pub struct Pointer {
     /// On the desk, m.
     pub at: [f64; 3],
     /// The primary button.
@@ -29,7 +40,7 @@ pub(crate) struct Pointer {
 }
 
 /// The mouse.
-pub(crate) struct Mouse {
+pub struct Mouse {
     samples: CreditSender<StylusSample>,
     others: Receiver<StylusSample>,
     info: Sender<StylusInfo>,
@@ -50,7 +61,7 @@ impl Mouse {
     ///
     /// # Errors
     /// [`BusError::Topic`].
-    pub(crate) fn new(
+    pub fn new(
         bus: &dyn Bus,
         topics: &Topics,
         (name, pen): (&str, u32),
@@ -92,7 +103,7 @@ impl Mouse {
     ///
     /// # Errors
     /// [`BusError::Topic`].
-    pub(crate) fn take(&mut self, now_ns: u64, brush: &str) -> Result<(), BusError> {
+    pub fn take(&mut self, now_ns: u64, brush: &str) -> Result<(), BusError> {
         if self.told.brush == brush {
             return Ok(());
         }
@@ -104,7 +115,7 @@ impl Mouse {
 
     /// True while no other stylus paints; otherwise the mouse is in the other hand.
     #[must_use]
-    pub(crate) fn is_free(&self, now_ns: u64) -> bool {
+    pub fn is_free(&self, now_ns: u64) -> bool {
         now_ns < self.silent_until_ns
     }
 
@@ -113,12 +124,7 @@ impl Mouse {
     ///
     /// # Errors
     /// [`BusError::Topic`].
-    pub(crate) fn send(
-        &mut self,
-        now_ns: u64,
-        places: &[Pointer],
-        pressure: f64,
-    ) -> Result<(), BusError> {
+    pub fn send(&mut self, now_ns: u64, places: &[Pointer], pressure: f64) -> Result<(), BusError> {
         while let Some(other) = self.others.try_recv() {
             if !self.own.contains(&other.header.source) && other.message.in_range {
                 self.silent_until_ns = now_ns + SILENCE_NS;

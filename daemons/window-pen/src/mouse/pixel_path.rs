@@ -16,7 +16,7 @@ const TELLING: f64 = 6.0;
 
 /// The path of a stroke.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct PixelPath {
+pub(super) struct PixelPath {
     at: Option<DVec2>,
     /// Direction, a unit vector; `None` while it is unknown.
     along: Option<DVec2>,
@@ -26,7 +26,7 @@ pub(crate) struct PixelPath {
 
 impl PixelPath {
     /// Begins a stroke in a direction, a unit vector.
-    pub(crate) fn begin(&mut self, along: DVec2) {
+    pub(super) fn begin(&mut self, along: DVec2) {
         *self = Self {
             along: Some(along),
             ..Self::default()
@@ -34,7 +34,7 @@ impl PixelPath {
     }
 
     /// The next place of the path for one of the pointer, in pixels of `pixel_m`.
-    pub(crate) fn smooth(&mut self, to: DVec2, pixel_m: f64) -> DVec2 {
+    pub(super) fn smooth(&mut self, to: DVec2, pixel_m: f64) -> DVec2 {
         let Some(from) = self.at.filter(|_| pixel_m > 0.0) else {
             (self.at, self.corner) = (Some(to), to);
             return to;

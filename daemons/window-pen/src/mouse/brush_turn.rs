@@ -5,9 +5,9 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::DVec2;
 use maulstick_num::{atan2, sin_cos};
 
-use crate::input::mouse_stylus::Pointer;
-use crate::input::pixel_path::PixelPath;
-use crate::settings::grip::Grip;
+use super::Pointer;
+use super::grip::Grip;
+use super::pixel_path::PixelPath;
 
 /// Travel of the pointer after which the direction of a stroke is known, m, and in pixels: a shorter way in whole pixels
 /// has hardly one.
@@ -30,7 +30,7 @@ const SLACK_PIXELS: f64 = 1.2;
 
 /// The turn of the brush over a stroke.
 #[derive(Debug, Default)]
-pub(crate) struct BrushTurn {
+pub struct BrushTurn {
     /// Turn of the broad side across the stroke, rad, without the painter's own turn.
     across_rad: f64,
     /// End of the string that the pointer draws, desk, m; `None` between strokes.
@@ -44,7 +44,7 @@ impl BrushTurn {
     /// The places with the turn of the brush there, of a pointer that goes in pixels of `pixel_m`. The first of a stroke
     /// wait until its direction is known, so that the brush is set down across it; meanwhile it hovers where the stroke
     /// begins.
-    pub(crate) fn turned(
+    pub fn turned(
         &mut self,
         now_ns: u64,
         places: &[Pointer],
@@ -98,7 +98,7 @@ impl BrushTurn {
 
     /// True while the start of a stroke waits for its direction.
     #[must_use]
-    pub(crate) fn is_waiting(&self) -> bool {
+    pub fn is_waiting(&self) -> bool {
         self.waiting.is_some()
     }
 

@@ -1,4 +1,9 @@
 //! Threads that pull frames: one query in flight for each surface, repeated as soon as it is answered.
+//!
+//! | module | content |
+//! | --- | --- |
+//! | [`tiles`] | tiles that a view wants |
+//! | [`tile_planner`] | the next query, so that the view's sheets hold them |
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -7,13 +12,15 @@ use std::time::{Duration, Instant};
 use half::f16;
 use maulstick_bus::bus::Answer;
 use maulstick_bus::{Bus, BusError, Payload, Qos, Wake};
-use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_rig::Stop;
-use maulstick_types::paint::{FrameHolds, FrameRequest};
+use maulstick_types::paint::{FrameHolds, FrameRequest, TILE};
 use maulstick_types::{DecodeError, Flags, FrameView, Origin, encode};
 
-use crate::render::tile_planner::{Asked, AtlasState, Part, TilePlanner};
-use crate::view::visible_tiles::Wanted;
+use tile_planner::{Asked, AtlasState, Part, TilePlanner};
+use tiles::Wanted;
+
+pub mod tile_planner;
+pub mod tiles;
 
 /// A frame that does not arrive within this time, and what the paint node may wait, is requested again.
 const LIMIT: Duration = Duration::from_millis(500);
@@ -25,6 +32,8 @@ const WAIT_MS: u32 = 200;
 const REST_MS: u32 = 1600;
 /// So many frames in a row that came only through the socket: shared memory does not work.
 const STRIKES: u32 = 3;
+/// Cells of a tile.
+const TILE_CELLS: usize = TILE * TILE;
 /// Bytes of a plane of half floats.
 const HALVES: usize = 2 * TILE_CELLS;
 /// Start of the wetness in a tile's planes: after red, green, blue and gloss.
@@ -63,17 +72,6 @@ pub struct Shown {
     pub journal: u64,
     /// The brush states that are in the detail; empty if this reply does not say.
     pub holds: Vec<FrameHolds>,
-}
-
-impl Shown {
-    /// The brush states in the picture, once all tiles are in it.
-    #[must_use]
-    pub fn holding(&self) -> crate::render::frame_reports::Holding {
-        crate::render::frame_reports::Holding {
-            journal: self.journal,
-            holds: self.holds.clone(),
-        }
-    }
 }
 
 /// Replies that the window has not yet taken, and what it wants.
@@ -367,7 +365,7 @@ impl Puller<'_> {
 }
 
 /// The planes of a tile as texels of colour and gloss, and of height; `None` if the length is wrong. See
-/// [`DisplayTile::to_bytes`](maulstick_appearance::display::DisplayTile::to_bytes).
+/// `DisplayTile::to_bytes` of `maulstick-appearance`.
 #[must_use]
 pub fn texels(planes: &[u8]) -> Option<(Vec<u8>, Vec<u8>)> {
     if planes.len() != HEIGHTS + 4 * TILE_CELLS {

@@ -5,7 +5,7 @@
 
 use maulstick_types::FrameView;
 
-use crate::view::visible_tiles::{TileRect, Wanted};
+use super::tiles::{TileRect, Wanted};
 
 /// While the detail covers the view, the base follows after so many replies, or when the paint rests.
 const BASE_EACH: u32 = 16;
