@@ -1,8 +1,8 @@
 //! The painting that the settings of a rig ask for.
 
 use maulstick_models::{AUTO, AutoRole, auto_model, model_called};
-use maulstick_optics::{Illuminant, PaintLibrary};
-use maulstick_painting::{PaintingSetup, paint_error};
+use maulstick_optics::{Illuminant, PaintError, PaintLibrary};
+use maulstick_painting::PaintingSetup;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{LightSection, RigConfig};
 use maulstick_types::Mixture;

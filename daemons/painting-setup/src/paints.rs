@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use maulstick_optics::{PaintError, PaintLibrary};
-use maulstick_painting::paint_error;
 use maulstick_rig::UserError;
 use maulstick_rig::table_file::{MOST_BYTES, read_table};
 use maulstick_types::Mixture;
