@@ -277,13 +277,8 @@ impl EditError {
             ),
             Self::Unfit(_) => say("restart the brush node"),
             Self::NoSurface(_) => say("the canvas is 0, the palette 1"),
-            Self::Edit(EditFault::Unknown(_)) => say("use a newer version of the program"),
-            Self::Edit(EditFault::NoField { .. }) => {
-                say("leave the field out, or use a newer version of the program")
-            }
-            Self::Edit(EditFault::Fields { .. }) | Self::Value(_) | Self::Light(_) => {
-                say("choose a value in range")
-            }
+            Self::Edit(fault) => say(fault.help()),
+            Self::Value(_) | Self::Light(_) => say("choose a value in range"),
             Self::Own { help, .. } => say(help),
             Self::NoCell { surface_mm, .. } => Advice::say(format!(
                 "the surface measures {} from its lower left corner",
