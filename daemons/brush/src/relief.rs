@@ -6,7 +6,7 @@ use maulstick_types::brush::BrushRelief;
 use maulstick_types::haptics::{HeightPatch, height_bytes, heights_um};
 use maulstick_types::scene::CANVAS;
 
-/// Side of a cell on the desk where the paint node has told none, m.
+/// Side of a cell on the desk until the paint node has sent one, m.
 const CELL_M: f64 = 1e-3;
 /// Beyond its edge the canvas is felt to end by this, m of the desk; its plane goes on there for the brush.
 const CANVAS_EDGE_M: f64 = 1e-3;

@@ -161,6 +161,19 @@ fn tenths_s(at_ns: u64) -> f64 {
     (at_ns / 100_000_000) as f64 * 0.1
 }
 
+/// Advice for a session's fault at a time since its beginning, ns.
+fn session_help(fault: &SessionFault, at_ns: u64, file: &Path) -> String {
+    if is_of_its_place(fault) {
+        return "`maulstick snapshot` says at which place of the journal it was made".to_owned();
+    }
+    let tenth_ns = 100_000_000 * u64::from(at_ns.is_multiple_of(100_000_000));
+    let end_s = tenths_s(at_ns.saturating_sub(tenth_ns));
+    format!(
+        "`maulstick take from {} --end {end_s:.1} -o TAKE` keeps what is before it",
+        file.display()
+    )
+}
+
 impl From<RecorderError> for UserError {
     fn from(error: RecorderError) -> Self {
         let usage = Self::usage(error.to_string());
@@ -180,15 +193,8 @@ impl From<RecorderError> for UserError {
             RecorderError::PaintingDamaged(file) => {
                 at(file).help("nothing can be painted again from this recording")
             }
-            RecorderError::Session { fault, file, .. } if is_of_its_place(fault) => at(file)
-                .help("`maulstick snapshot` says at which place of the journal it was made"),
-            RecorderError::Session { at_ns, file, .. } => {
-                let tenth_ns = 100_000_000 * u64::from(at_ns.is_multiple_of(100_000_000));
-                at(file).help(format!(
-                    "`maulstick take from {} --end {:.1} -o TAKE` keeps what is before it",
-                    file.display(),
-                    tenths_s(at_ns.saturating_sub(tenth_ns))
-                ))
+            RecorderError::Session { fault, at_ns, file } => {
+                at(file).help(session_help(fault, *at_ns, file))
             }
             RecorderError::Damaged { file, .. } => at(file),
             RecorderError::Unreadable { file: Some(file), .. } => at(file).help(version),

@@ -92,7 +92,7 @@ impl KnownTool {
                 hardware_serial_lo,
             } => {
                 let serial = u64::from(hardware_serial_hi) << 32 | u64::from(hardware_serial_lo);
-                // Pens without one are told apart by the connection.
+                // The connection distinguishes pens without one.
                 if serial != 0 {
                     self.tool = Tool(serial << 1 | u64::from(self.eraser));
                 }

@@ -64,7 +64,7 @@ impl<M: Message + Clone> Announcer<M> {
     ///
     /// # Errors
     /// As [`Sender::send`].
-    pub fn turn(&mut self, now_ns: u64) -> Result<(), BusError> {
+    pub fn poll(&mut self, now_ns: u64) -> Result<(), BusError> {
         while let Some(arrival) = self.heard.try_recv() {
             let header = Header::from_bytes(&arrival.bytes);
             if header.is_ok_and(|header| !self.is_own(&header)) {

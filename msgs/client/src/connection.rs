@@ -188,7 +188,7 @@ impl<M: Message> Feed<M> {
     ///
     /// # Errors
     /// A [`UserError`] where none comes.
-    pub fn hear(&mut self) -> Result<Received<M>, UserError> {
+    pub fn wait_for_next(&mut self) -> Result<Received<M>, UserError> {
         let give_up = Instant::now() + PATIENCE;
         loop {
             if let Some(received) = self.messages.newest() {

@@ -149,7 +149,7 @@ impl CommandDispatcher {
             let waiting = queue.waiting.iter().filter_map(Ready::holds_strokes_ns);
             waiting.chain(queue.asked_ns).min()
         });
-        // In this order: an outcome is told before its request leaves the queue.
+        // In this order: an outcome is reported before its request leaves the queue.
         let queued = queues.min();
         let outcomes = self.outcomes.lock().unwrap_or_else(PoisonError::into_inner);
         queued.into_iter().chain(outcomes.oldest_ns).min()
@@ -160,7 +160,7 @@ impl CommandDispatcher {
 const LONG: Duration = Duration::from_millis(500);
 
 impl CommandDispatcher {
-    /// Processes that have not answered for half a second; an export tells how far it is by itself.
+    /// Processes that have not answered for half a second; an export reports its own progress.
     #[must_use]
     pub fn waits(&self) -> Vec<Peer> {
         let waits = |queue_of: &Queue| {

@@ -8,7 +8,7 @@ use maulstick_types::stylus::{StylusPose, StylusSample};
 const KEPT_NS: u64 = 5_000_000_000;
 /// Most samples that are kept: 5 s at 1 kHz.
 const MOST: usize = 5000;
-/// Length of the part from which the rate is told, ns.
+/// Length of the part from which the rate is computed, ns.
 const RATED_NS: u64 = 1_000_000_000;
 
 /// One sample.

@@ -140,7 +140,7 @@ impl NodeHandle {
         let mut pulse = self.pulse()?;
         while !self.stop.requested() {
             let wait = turn()?;
-            pulse.turn(self.bus.now_ns())?;
+            pulse.poll(self.bus.now_ns())?;
             self.wake.wait(wait.min(LONGEST_WAIT));
         }
         Ok(())
@@ -164,7 +164,7 @@ impl NodeHandle {
         let (mut pulse, bus) = (self.pulse()?, Arc::clone(&self.bus));
         let stop = self.stop.clone();
         let beat = move || {
-            while !stop.requested() && pulse.turn(bus.now_ns()).is_ok() {
+            while !stop.requested() && pulse.poll(bus.now_ns()).is_ok() {
                 std::thread::sleep(Duration::from_nanos(NodeStatus::PERIOD_NS));
             }
         };

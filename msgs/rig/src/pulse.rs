@@ -63,7 +63,7 @@ impl Pulse {
     ///
     /// # Errors
     /// [`BusError::Topic`].
-    pub fn turn(&mut self, now_ns: u64) -> Result<(), BusError> {
+    pub fn poll(&mut self, now_ns: u64) -> Result<(), BusError> {
         self.turns += 1;
         let is_due = |told_ns: u64| now_ns.saturating_sub(told_ns) >= NodeStatus::PERIOD_NS;
         if self.told_ns.is_none_or(is_due) {
@@ -100,7 +100,7 @@ mod tests {
                 consumed: ms,
                 ..NodeWork::default()
             });
-            pulse.turn(ms * 1_000_000).expect("sent");
+            pulse.poll(ms * 1_000_000).expect("sent");
         }
         net.advance(1_000_000_000);
         let said: Vec<(u64, u64)> = std::iter::from_fn(|| heard.try_recv())

@@ -184,7 +184,7 @@ fn haptics() -> [String; 11] {
     ]
 }
 
-fn brushes() -> [String; 6] {
+fn brushes() -> [String; 5] {
     [
         line(&BrushDef {
             brush: "main".into(),
@@ -231,19 +231,22 @@ fn brushes() -> [String; 6] {
             first: [-3, 4],
             heights_um: height_bytes([5, -6, 700, 8]),
         }),
-        line(&PaintConsumed {
-            brushes: vec![BrushCredit {
-                brush: 1,
-                epoch: 2,
-                next: 3,
-                wetness: 0.5,
-                film_m: 1e-4,
-                viscosity_m2_s: 0.01,
-                contact_m: 0.008,
-                file: 4,
-            }],
-        }),
     ]
+}
+
+fn credit() -> [String; 1] {
+    [line(&PaintConsumed {
+        brushes: vec![BrushCredit {
+            brush: 1,
+            epoch: 2,
+            next: 3,
+            wetness: 0.5,
+            film_m: 1e-4,
+            viscosity_m2_s: 0.01,
+            contact_m: 0.008,
+            file: 4,
+        }],
+    })]
 }
 
 fn light() -> Light {
@@ -420,6 +423,7 @@ fn all() -> String {
         devices().concat(),
         haptics().concat(),
         brushes().concat(),
+        credit().concat(),
         scene().concat(),
         journal().concat(),
         views().concat(),

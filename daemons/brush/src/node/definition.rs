@@ -95,7 +95,7 @@ impl Definition {
 
     /// Repeats the announcement for late subscribers.
     pub(super) fn serve(&mut self, now_ns: u64) -> Result<(), BusError> {
-        self.announcer.turn(now_ns)
+        self.announcer.poll(now_ns)
     }
 
     /// True while the brush of this very command waits to be adopted.

@@ -100,7 +100,7 @@ pub fn run(member: &mut NodeHandle, settings: &PlayerSettings) -> Result<(), Use
     commander.send(announce, None, ANNOUNCE, &|| stop.requested())?;
     member.ready()?;
     member.run(|| {
-        let wait = player.turn()?;
+        let wait = player.poll()?;
         member.work.set(player.work());
         if player.ended() && !settings.stay {
             stop.request();
@@ -190,7 +190,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    fn turn(&mut self) -> Result<Duration, UserError> {
+    fn poll(&mut self) -> Result<Duration, UserError> {
         let now_ns = self.bus.now_ns();
         if self.sent == 0 {
             self.start_ns = now_ns;
@@ -232,7 +232,7 @@ impl<'a> Player<'a> {
             self.samples.send(flags, stamp, sample)?;
         }
         self.samples.serve(now_ns)?;
-        self.tell(now_ns)?;
+        self.report(now_ns)?;
         Ok(wait)
     }
 
@@ -248,7 +248,7 @@ impl<'a> Player<'a> {
         Some(pace_ns + ((time_ns - self.pace_from_ns) as f64 / rate) as u64)
     }
 
-    fn tell(&mut self, now_ns: u64) -> Result<(), UserError> {
+    fn report(&mut self, now_ns: u64) -> Result<(), UserError> {
         if now_ns < self.status_ns + STATUS_PERIOD_NS {
             return Ok(());
         }

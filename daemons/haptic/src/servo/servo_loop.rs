@@ -105,7 +105,7 @@ impl ServoLoop {
     fn step(&mut self, late_ns: u64) -> Result<ControlFlow<()>, DeviceError> {
         let now_ns = monotonic_ns();
         let dt = now_ns.saturating_sub(self.read_ns) as f64 * 1e-9;
-        self.take_in();
+        self.drain_inputs();
         let Some(reading) = self.device.read(dt)? else {
             if dt > self.longest_s {
                 self.device.write(DVec3::ZERO, DVec3::ZERO)?;
@@ -148,7 +148,7 @@ impl ServoLoop {
     }
 
     /// Takes in the newest model, guide, force of paint and settings.
-    fn take_in(&mut self) {
+    fn drain_inputs(&mut self) {
         if let Some((contact, sender)) = self.models.newest(self.channels.models.read()) {
             self.servo.receive(contact, sender);
         }

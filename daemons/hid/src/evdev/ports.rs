@@ -155,7 +155,7 @@ impl EventSource {
     }
 
     /// Reads pending events into frames.
-    fn take_in(&mut self, limit: Duration) -> std::io::Result<()> {
+    fn read_events(&mut self, limit: Duration) -> std::io::Result<()> {
         let timeout = PollTimeout::try_from(limit).unwrap_or(PollTimeout::MAX);
         let mut waiting = [PollFd::new(self.device.as_fd(), PollFlags::POLLIN)];
         match poll(&mut waiting, timeout) {
@@ -220,7 +220,7 @@ impl HidSource for EventSource {
 
     fn read(&mut self, report: &mut [u8], limit: Duration) -> Result<usize, UserError> {
         if self.frames.is_empty() {
-            self.take_in(limit).map_err(|error| {
+            self.read_events(limit).map_err(|error| {
                 let name = &self.name;
                 let what = format!("{name} was unplugged, or does not answer: {error}");
                 UserError::failure(what).help("plug it in again")

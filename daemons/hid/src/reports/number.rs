@@ -86,7 +86,7 @@ impl Number {
         (self.count(report) - self.least) / (self.most - self.least)
     }
 
-    /// The angles of the least and the greatest count, rad, as far as the descriptor tells: by its unit, or as degrees,
+    /// The angles of the least and the greatest count, rad, as far as the descriptor has them: by its unit, or as degrees,
     /// where a range is signed and within ±`within`.
     fn range_rad(&self, within: f64) -> Option<[f64; 2]> {
         let logical = [self.least, self.most];

@@ -102,7 +102,7 @@ impl Recorder {
                 }
                 self.lost += 1;
             }
-            // The thread has ended by a fault, which `end` tells.
+            // The thread has ended by a fault, which `end` returns.
             Err(TrySendError::Disconnected(_)) => self.lines = None,
         }
     }

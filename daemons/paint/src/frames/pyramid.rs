@@ -80,7 +80,7 @@ impl Pyramid {
     }
 
     /// Version of a tile as views count them: no two tiles of a level share one, and bare tiles
-    /// come first, one after the other, so that any number of tiles is told in parts.
+    /// come first, one after the other, so that any number of tiles is sent in parts.
     pub(super) fn version(surface: &FedSurface, level: u32, id: TileId) -> u64 {
         match Self::painted(surface, level, id) {
             0 => u64::from(id.y) * u64::from(grid(surface, level)[0]) + u64::from(id.x) + 1,

@@ -112,7 +112,7 @@ impl Outputs {
             self.scene_version = scene.version;
             self.scene.send(now_ns, scene)?;
         }
-        self.scene.turn(now_ns)
+        self.scene.poll(now_ns)
     }
 
     /// True once the next status is due; it counts as looked at.

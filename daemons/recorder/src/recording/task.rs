@@ -83,7 +83,7 @@ impl Recording {
     }
 
     async fn run(&mut self) -> Result<(), RecorderError> {
-        self.tell(RecorderEvent::Begun {
+        self.report(RecorderEvent::Begun {
             file: self.part.path().to_owned(),
         });
         self.ring.trim()?;
@@ -97,7 +97,7 @@ impl Recording {
         loop {
             tokio::select! {
                 received = self.listener.arrival() => match received {
-                    Some(received) => self.take_in(received)?,
+                    Some(received) => self.write(received)?,
                     None => break,
                 },
                 copied = PaintingCopy::made(&mut self.copy) => self.attach(copied)?,
@@ -114,20 +114,20 @@ impl Recording {
         self.finish().await
     }
 
-    fn tell(&self, event: RecorderEvent) {
+    fn report(&self, event: RecorderEvent) {
         // An owner that has gone needs to know nothing.
         self.events.send(event).ok();
     }
 
     fn beat(&mut self) {
         let now_ns = self.listener.member.bus.now_ns();
-        if let Some(Err(error)) = self.pulse.as_mut().map(|pulse| pulse.turn(now_ns)) {
+        if let Some(Err(error)) = self.pulse.as_mut().map(|pulse| pulse.poll(now_ns)) {
             tracing::debug!("{error}");
         }
     }
 
     /// Writes a message: into another file where the journal broke off.
-    fn take_in(&mut self, received: ReceivedMessage) -> Result<(), RecorderError> {
+    fn write(&mut self, received: ReceivedMessage) -> Result<(), RecorderError> {
         match self.watch.note(&received) {
             // What is missing is in the painting that the file will begin with.
             Some(Break::Gap) if self.copy.is_some() => self.copy_anew(),
@@ -138,7 +138,7 @@ impl Recording {
         if let Some(copy) = &mut self.copy
             && let Some(trouble) = copy.note(&received)
         {
-            self.tell(RecorderEvent::PaintingUnavailable(trouble));
+            self.report(RecorderEvent::PaintingUnavailable(trouble));
         }
         self.state.add(received);
         Ok(())
@@ -154,7 +154,7 @@ impl Recording {
         self.part_broken()?;
         // A copy belongs to the file at whose beginning it was asked for.
         if is_full && !self.copy.as_ref().is_some_and(PaintingCopy::is_made) {
-            self.go_on(Continuation::Full)?;
+            self.begin_next_file(Continuation::Full)?;
         }
         self.part.flush()?;
         if let Some(copy) = &mut self.copy {
@@ -165,7 +165,7 @@ impl Recording {
 
     fn part_broken(&mut self) -> Result<(), RecorderError> {
         if self.is_broken && self.part.age() >= SHORTEST {
-            self.go_on(Continuation::JournalBroke)?;
+            self.begin_next_file(Continuation::JournalBroke)?;
         }
         Ok(())
     }
@@ -176,12 +176,12 @@ impl Recording {
     }
 
     /// Goes on in another file.
-    fn go_on(&mut self, cause: Continuation) -> Result<(), RecorderError> {
+    fn begin_next_file(&mut self, cause: Continuation) -> Result<(), RecorderError> {
         let next = self.ring.next().to_owned();
         self.end_file(Some(&next))?;
         let create: fn(&Path) -> std::io::Result<File> = create_private;
         self.part = Part::begin(&next, create, &self.listener, self.settings.json_hz)?;
-        self.tell(RecorderEvent::Continued { file: next, cause });
+        self.report(RecorderEvent::Continued { file: next, cause });
         self.ring.trim()?;
         // What is sent rarely is in each file, from its beginning on.
         let now_ns = self.listener.member.bus.now_ns();
@@ -203,7 +203,7 @@ impl Recording {
             Ok(painting) => {
                 self.part.attach(&painting)?;
                 self.copy = None;
-                self.tell(RecorderEvent::PaintingAttached {
+                self.report(RecorderEvent::PaintingAttached {
                     file: self.part.path().to_owned(),
                 });
             }
@@ -211,7 +211,7 @@ impl Recording {
                 let copy = self.copy.as_mut();
                 let trouble = copy.and_then(|copy| copy.refused(CopyTrouble::Failed(fault)));
                 if let Some(trouble) = trouble {
-                    self.tell(RecorderEvent::PaintingUnavailable(trouble));
+                    self.report(RecorderEvent::PaintingUnavailable(trouble));
                 }
             }
         }
@@ -245,7 +245,7 @@ impl Recording {
         let [lost, dropped, _] = missing;
         let messages = self.part.finish(missing, next)?;
         let file = self.part.path().to_owned();
-        self.tell(RecorderEvent::FileEnded(FileSummary {
+        self.report(RecorderEvent::FileEnded(FileSummary {
             bytes: std::fs::metadata(&file).map_or(0, |data| data.len()),
             file,
             messages,

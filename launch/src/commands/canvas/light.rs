@@ -45,7 +45,7 @@ pub(super) fn run(options: &LightOptions) -> Result<i32, UserError> {
     changed(change, &Light::default())?;
     let client = Client::open(&options.target)?;
     let mut scenes: Feed<Scene> = client.follow(&client.topics().scene(), Qos::Cached)?;
-    let before = scenes.hear()?.message.light;
+    let before = scenes.wait_for_next()?.message.light;
     let mut light = changed(change, &before)?;
     let expose = match change.exposure {
         Some(chosen) => chosen == Exposure::Auto,
@@ -55,7 +55,7 @@ pub(super) fn run(options: &LightOptions) -> Result<i32, UserError> {
         let mut statuses = client.follow(&client.topics().paint_status(), Qos::Background)?;
         client.send(Relight { light, expose })?;
         wait_for_baking(&mut statuses, client.now_ns())?;
-        light = scenes.hear()?.message.light;
+        light = scenes.wait_for_next()?.message.light;
     } else {
         light = before;
     }
@@ -70,7 +70,7 @@ fn wait_for_baking(statuses: &mut Feed<PaintStatus>, since_ns: u64) -> Result<()
         bar.set_style(style);
     }
     loop {
-        let status = statuses.hear()?;
+        let status = statuses.wait_for_next()?;
         if status.header.sent_ns < since_ns {
             continue;
         }

@@ -81,7 +81,7 @@ pub(super) fn run(options: &VersionsOptions) -> Result<i32, UserError> {
             session.send(edit)?;
         }
         let mut scenes = session.follow::<Scene>(&session.topics().scene(), Qos::Cached)?;
-        return list(&scenes.hear()?.message, options.json);
+        return list(&scenes.wait_for_next()?.message, options.json);
     };
     if let (Some([one, other]), Some(output)) = (options.compare.as_deref(), &options.output) {
         return compare(path, [one, other], output, options.json);

@@ -42,7 +42,7 @@ fn run(seed: u64, faults: Faults, total: u64, flags: Flags) -> Vec<u64> {
         while let Some(received) = receiver.pop() {
             got.push(received.header.seq);
         }
-        // Credit travels over the same bad network: lost with the same chance, told again when
+        // Credit travels over the same bad network: lost with the same chance, sent again when
         // the sender repeats itself.
         if !receiver.unheard().is_empty() || now_ns % (5 * STEP_NS) == 0 {
             sender.consumed(7, got.last().map_or(0, |last| last + 1), now_ns);
@@ -72,7 +72,7 @@ proptest! {
     }
 }
 
-/// A device's stream on a network that loses everything until it is told otherwise.
+/// A device's stream on a network that loses everything until it is set otherwise.
 struct Stream {
     net: MemoryNet,
     bus: MemoryBus,

@@ -71,6 +71,18 @@ pub enum EditFault {
     },
 }
 
+impl EditFault {
+    /// Advice to a user.
+    #[must_use]
+    pub fn help(&self) -> &'static str {
+        match self {
+            Self::Unknown(_) => "use a newer version of the program",
+            Self::NoField { .. } => "leave the field out, or use a newer version of the program",
+            Self::Fields { .. } => "choose a value in range",
+        }
+    }
+}
+
 /// The fields of one kind of edit.
 pub trait EditFields: Serialize + DeserializeOwned {
     /// Name of the kind on the wire and in files; it never changes.

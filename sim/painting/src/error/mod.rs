@@ -97,13 +97,8 @@ impl EditError {
             Self::Layer(error) => error.advice(),
             Self::History(error) => error.advice(),
             Self::Version(error) => error.advice(),
-            Self::Edit(EditFault::Unknown(_)) => Advice::say("use a newer version of the program"),
-            Self::Edit(EditFault::NoField { .. }) => {
-                Advice::say("leave the field out, or use a newer version of the program")
-            }
-            Self::Edit(EditFault::Fields { .. }) | Self::Value(_) => {
-                Advice::say("choose a value in range")
-            }
+            Self::Edit(fault) => Advice::say(fault.help()),
+            Self::Value(_) => Advice::say("choose a value in range"),
             Self::Own { help, .. } => Advice::say(*help),
             Self::Damaged(_) => Advice::Recover,
         }

@@ -103,7 +103,7 @@ struct Lent;
 impl Drop for Lent {
     fn drop(&mut self) {
         if close(PATIENCE).is_err() {
-            // The borrow must not end, and the scheduler was told to stop, which takes the force away.
+            // The borrow must not end, and the scheduler was asked to stop, which takes the force away.
             tracing::error!(
                 "the driver of the haptic device does not come back from a call, so this process ends: switch the device off and on, and start the rig anew"
             );

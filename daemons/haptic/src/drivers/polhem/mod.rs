@@ -82,7 +82,7 @@ fn refused(path: &str, error: HandshakeError) -> UserError {
             "what answers at {path} is no WoodenHaptics or Polhem stylus: it says {}",
             match said.chars().all(|c| c.is_ascii_graphic() || c == ' ') {
                 true => format!("{said:?}"),
-                // Noise is other noise each time, and is told once.
+                // Noise is other noise each time, and is logged once.
                 false => "what cannot be read".into(),
             }
         ))
@@ -159,7 +159,7 @@ impl<W: Wire> Polhem<W> {
 
     /// Sends what is to be said next: a force; where there is none, from time to time the question for
     /// the button, which poses do not tell. Each is a command and holds off the watchdog, so amplifiers
-    /// that rest have no current but are not off: neither poses nor the button are told without one.
+    /// that rest have no current but are not off: neither poses nor the button are reported without one.
     fn say(&mut self, force: DVec3) -> Result<(), DeviceError> {
         if !self.link.is_free() {
             return Ok(());

@@ -90,7 +90,7 @@ impl<'a> Guidance<'a> {
         })
     }
 
-    /// Guides until all strokes are traced, again and again where it `repeats`, or until it is told to end.
+    /// Guides until all strokes are traced, again and again where it `repeats`, or until it is asked to stop.
     pub(super) async fn guide(&mut self, repeats: bool) -> Result<(), RecorderError> {
         let mut due = Instant::now();
         while !self.member.stop.requested() {
@@ -127,7 +127,7 @@ impl<'a> Guidance<'a> {
         self.traced.follow(tip, touch);
         let [count, traced] = self.traced.counts();
         if count == traced {
-            self.tell(now);
+            self.report(now);
             return Ok(Course::AllTraced);
         }
         if !self.paused && self.strength > 0.0 {
@@ -135,7 +135,7 @@ impl<'a> Guidance<'a> {
             self.send(if is_near { self.strength } else { 0.0 })?;
         }
         if now >= self.report {
-            self.tell(now);
+            self.report(now);
         }
         Ok(Course::GoesOn)
     }
@@ -177,7 +177,7 @@ impl<'a> Guidance<'a> {
     }
 
     /// Reports how far the hand has come.
-    fn tell(&mut self, now: Instant) {
+    fn report(&mut self, now: Instant) {
         self.report = now + REPORT_PERIOD;
         let [strokes, traced] = self.traced.counts();
         self.controls.report(ReplayReport::Guiding(Guiding {
