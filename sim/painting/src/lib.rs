@@ -82,9 +82,10 @@
 //! - Backend: processor, or a graphics device whose steps stay unsettled until somebody reads them; surfaces with wells
 //!   are the processor's.
 //! - An edit reaches the parts that it changes: `bench` and `clock`. One that takes or dries wet paint stops a drying
-//!   (`clock.stop`), leaves the paint of wells
-//!   (`SurfaceState::staying`) and decides about planes of a model's own (`Planes::own`). One that moves paint has open
-//!   windows written back first; `begin_step` ends open steps.
+//!   (`clock.stop`), leaves the paint of wells (`SurfaceState::staying`) and decides about planes of a model's own
+//!   (`Planes::own`). One that moves paint has open windows written back first; `begin_step` ends open steps.
+//! - Of the parts the desk knows no brush, the brushes know no history, and the workbench, which has all of them, knows no
+//!   clock: dryings are handed it.
 
 pub mod beginning;
 pub mod brush_colour;

@@ -201,9 +201,10 @@ mod cli {
         read: |matches| {
             let DryOrStop { dry, stop } = clap::FromArgMatches::from_arg_matches(matches)?;
             let surface = dry.surface;
-            Ok(match stop {
-                true => StopDrying { surface }.into(),
-                false => dry.into(),
+            Ok(if stop {
+                StopDrying { surface }.into()
+            } else {
+                dry.into()
             })
         },
     };
