@@ -120,7 +120,8 @@ fn a_picture_as_ground_goes_with_the_take() {
     let place = Place::new();
     place.short_demo("bare.mcap", 3.0);
     let plain = painted(&place, "bare.mcap", "Ground.PNG", &COARSE);
-    let ground = [&["--ground", "Ground.PNG"], &COARSE[..]].concat();
+    let paint = ["--load", "Pyrrole Red"];
+    let ground = [&["--ground", "Ground.PNG"], &paint[..], &COARSE].concat();
     let wanted = painted(&place, "bare.mcap", "on-picture.png", &ground);
     assert!(wanted != plain);
     let embed = ["take", "embed", "bare.mcap", "-o", "pictured.mcap"];
