@@ -51,43 +51,52 @@ fn a_demo_becomes_a_picture_the_same_every_time() {
     assert!(place.bytes("one.png") != place.bytes("three.png"));
 }
 
+/// Picture of a take by these options.
+fn painted(place: &Place, take: &str, picture: &str, kit: &[&str]) -> Vec<u8> {
+    place.done(&[&["render", take, "-o", picture], kit].concat());
+    place.bytes(picture)
+}
+
+/// Options with a brush in a file of its own, and a canvas of small cost.
+const KIT: [&str; 10] = [
+    "--brush",
+    "own.toml",
+    "--size",
+    "320x300",
+    "--cell-mm",
+    "0.5",
+    "--illuminant",
+    "A",
+    "--load",
+    "Pyrrole Red",
+];
+
+/// Embeds [`KIT`] in `bare.mcap`, as each of some takes.
+fn embed(place: &Place, takes: &[&str]) {
+    let brush = maulstick_brush::BrushFile::library("filbert").expect("a brush");
+    std::fs::write(place.path("own.toml"), brush.to_toml().expect("a file")).expect("written");
+    for take in takes {
+        place.done(&[&["take", "embed", "bare.mcap", "-o", take], &KIT[..]].concat());
+    }
+}
+
 #[test]
 fn a_take_that_embeds_what_it_is_painted_with_gives_the_same_painting() {
     let place = Place::new();
     // The sweeps of its first seconds begin on the palette beside a small canvas.
     place.short_demo("bare.mcap", 16.0);
-    let brush = maulstick_brush::BrushFile::library("filbert").expect("a brush");
-    std::fs::write(place.path("own.toml"), brush.to_toml().expect("a file")).expect("written");
-    let kit = [
-        "--brush",
-        "own.toml",
-        "--size",
-        "640x600",
-        "--cell-mm",
-        "0.25",
-        "--illuminant",
-        "A",
-        "--load",
-        "Pyrrole Red",
-    ];
-    let paint = |take: &str, picture: &str, kit: &[&str]| {
-        place.done(&[&["render", take, "-o", picture], kit].concat());
-        place.bytes(picture)
-    };
-    let wanted = paint("bare.mcap", "options.png", &kit);
-    for name in ["whole.mcap", "again.mcap"] {
-        place.done(&[&["take", "embed", "bare.mcap", "-o", name], &kit[..]].concat());
-    }
+    embed(&place, &["whole.mcap", "again.mcap"]);
+    let wanted = painted(&place, "bare.mcap", "options.png", &KIT);
     support::assert_same(
         &place.bytes("whole.mcap"),
         &place.bytes("again.mcap"),
         "one take embedded twice",
     );
     std::fs::remove_file(place.path("own.toml")).expect("removed");
-    let got = paint("whole.mcap", "embedded.png", &[]);
+    let got = painted(&place, "whole.mcap", "embedded.png", &[]);
     support::assert_same(&wanted, &got, "by options and by what the take embeds");
-    assert!(paint("bare.mcap", "plain.png", &[]) != wanted);
-    let other = paint("whole.mcap", "other.png", &["--load", "Bone Black"]);
+    assert!(painted(&place, "bare.mcap", "plain.png", &COARSE) != wanted);
+    let other = painted(&place, "whole.mcap", "other.png", &["--load", "Bone Black"]);
     assert!(other != wanted, "an option wins over what the take embeds");
     place.done(&[
         "up",
@@ -104,27 +113,34 @@ fn a_take_that_embeds_what_it_is_painted_with_gives_the_same_painting() {
         &String::from_utf8_lossy(&place.done(&["take", "info", "whole.mcap"]).stdout),
         &["embeds", "Pyrrole Red"],
     );
+}
 
-    // A picture as ground goes with the take.
-    std::fs::rename(place.path("options.png"), place.path("Ground.PNG")).expect("renamed");
-    let ground = ["--ground", "Ground.PNG", "--load", "Pyrrole Red"];
-    let wanted = paint("bare.mcap", "on-picture.png", &ground);
-    place.done(
-        &[
-            &["take", "embed", "bare.mcap", "-o", "pictured.mcap"],
-            &ground[..],
-        ]
-        .concat(),
-    );
+#[test]
+fn a_picture_as_ground_goes_with_the_take() {
+    let place = Place::new();
+    place.short_demo("bare.mcap", 3.0);
+    let plain = painted(&place, "bare.mcap", "Ground.PNG", &COARSE);
+    let paint = ["--load", "Pyrrole Red"];
+    let ground = [&["--ground", "Ground.PNG"], &paint[..], &COARSE].concat();
+    let wanted = painted(&place, "bare.mcap", "on-picture.png", &ground);
+    assert!(wanted != plain);
+    let embed = ["take", "embed", "bare.mcap", "-o", "pictured.mcap"];
+    place.done(&[&embed[..], &ground].concat());
     std::fs::remove_file(place.path("Ground.PNG")).expect("removed");
-    let got = paint("pictured.mcap", "embedded.png", &[]);
+    let got = painted(&place, "pictured.mcap", "embedded.png", &[]);
     support::assert_same(
         &wanted,
         &got,
         "on a picture, and on the one that the take embeds",
     );
+}
 
-    // Its brush is damaged: the samples can be had, and nothing else is painted in its place.
+/// The samples of a take whose brush is damaged can be had, and nothing else is painted in its place.
+#[test]
+fn a_damaged_brush_of_a_take_is_refused() {
+    let place = Place::new();
+    place.short_demo("bare.mcap", 0.5);
+    embed(&place, &["whole.mcap"]);
     let mut bytes = place.bytes("whole.mcap");
     let at = bytes.windows(6).position(|found| found == b"[head]");
     bytes[at.expect("a brush file") + 1] = b'x';
@@ -200,6 +216,7 @@ fn a_gpu_that_must_be_there_and_is_not_is_told() {
     let place = Place::new();
     place.short_demo("demo.mcap", 1.0);
     let render = ["render", "demo.mcap", "-o", "p.png", "--backend", "gpu"];
+    let render = [&render[..], &COARSE].concat();
     let mut without = place.maulstick(&render);
     for drivers in [
         "VK_DRIVER_FILES",
@@ -270,7 +287,7 @@ fn bad_takes_are_refused_and_damaged_ones_recovered() {
         &["damaged"],
     );
     place.done(&["take", "recover", "cut.mcap", "-o", "saved.mcap"]);
-    place.done(&["render", "saved.mcap", "-o", "p.png"]);
+    place.done(&[&["render", "saved.mcap", "-o", "p.png"], &COARSE[..]].concat());
     has(
         &fault(&place, &["render", "p.png", "-o", "q.png"], 2),
         &["not an MCAP file"],

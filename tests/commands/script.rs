@@ -17,7 +17,7 @@ fn a_script_of_a_take_is_the_take_and_more_steps_are_more() {
     let place = Place::new();
     // The sweeps of its first seconds begin on the palette beside a small canvas.
     place.short_demo("flower.mcap", 16.0);
-    let size = ["--size", "640x600", "--cell-mm", "0.25"];
+    let size = ["--size", "320x300", "--cell-mm", "0.5"];
     let take = ["render", "flower.mcap", "-o", "take.png", "--load", LOAD];
     place.done(&[&take[..], &size].concat());
     let paint = |steps: &str, picture: &str| {

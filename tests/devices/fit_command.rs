@@ -31,7 +31,7 @@ fn stand() -> Similarity {
     }
 }
 
-/// A take in which a hand goes to places of the desk and stays at each for eight seconds, of which one without a
+/// A take in which a hand goes to places of the desk and stays at each for five seconds, of which one without a
 /// stall is enough.
 fn showing(places: &[[f64; 2]]) -> Take {
     let mut samples = Vec::new();
@@ -56,7 +56,7 @@ fn showing(places: &[[f64; 2]]) -> Take {
     for place in places {
         let to = DVec3::new(place[0], place[1], 0.0);
         (0..150).for_each(|i| sample(at.lerp(to, f64::from(i) / 150.0)));
-        (0..2000).for_each(|_| sample(to));
+        (0..1250).for_each(|_| sample(to));
         at = to;
     }
     Take {

@@ -56,7 +56,7 @@ fn tip(sample: &StylusSample, head_length_m: f64) -> Option<DVec3> {
     Some(DVec3::from_array(pose.position_m) + bristles * head_length_m)
 }
 
-/// Mean distance of a painting hand from the straight path in ten seconds, m.
+/// Mean distance of a painting hand from the straight path in three of its strokes, m.
 fn aside(samples: &mut Receiver<StylusSample>, head_length_m: f64) -> f64 {
     drain(samples);
     let (mut first_ns, mut sum, mut count) = (None, 0.0, 0u32);
@@ -68,13 +68,13 @@ fn aside(samples: &mut Receiver<StylusSample>, head_length_m: f64) -> f64 {
                 sum += tip.y.abs();
                 count += 1;
             }
-            if event_ns > *first_ns.get_or_insert(event_ns) + 10_000_000_000 {
+            if event_ns > *first_ns.get_or_insert(event_ns) + 7_500_000_000 {
                 return Some(());
             }
         }
         None
     });
-    assert!(ended.is_some() && count > 1000, "{count} samples");
+    assert!(ended.is_some() && count > 750, "{count} samples");
     sum / f64::from(count)
 }
 

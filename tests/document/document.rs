@@ -55,7 +55,7 @@ fn a_rendered_document_is_the_picture_and_goes_on() {
 #[test]
 fn what_was_done_is_there_after_a_kill_and_can_be_undone() {
     let place = Place::new();
-    let mut launcher = Launcher::up(&place, &["x.maul"]);
+    let mut launcher = Launcher::up(&place, &["x.maul", "--size", "256x256"]);
     launcher.wait_says("painting in");
     place.done(&["load", "Pyrrole Red"]);
     place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);
@@ -184,8 +184,8 @@ fn kill_at_random(rounds: u32) {
                 "Cobalt Blue",
                 "--size",
                 "512x512",
-                COARSE[0],
-                COARSE[1],
+                "--cell-mm",
+                "0.25",
             ][..if round == 0 { 11 } else { 7 }],
         );
         let (bus, topics) = join(&place);
@@ -233,7 +233,7 @@ fn nothing_committed_is_lost_when_fifty_rigs_are_killed() {
 fn a_take_into_a_painting_begins_again_after_a_crash() {
     let place = Place::new();
     place.short_demo("take.mcap", 4.0);
-    let load = ["--load", "Cobalt Blue", COARSE[0], COARSE[1]];
+    let load = ["--load", "Cobalt Blue", "--cell-mm", "0.25"];
     place.done(&[&["render", "take.mcap", "-o", "whole.png"], &load[..]].concat());
     let play = [
         "up",

@@ -4,15 +4,19 @@
 mod support;
 
 use nix::sys::signal::Signal;
-use support::{Launcher, PATIENCE, Place, account, fault, has, info, signal, wait_for};
+use support::{COARSE, Launcher, PATIENCE, Place, account, fault, has, info, signal, wait_for};
 
 #[test]
 fn no_command_writes_over_a_file_of_another_kind_unless_it_is_told_to() {
     let place = Place::new();
     place.short_demo("take.mcap", 2.0);
-    place.done(&["render", "take.mcap", "-o", "p.png", "--document", "x.maul"]);
+    let [cell, coarse] = COARSE;
+    let render = ["render", "take.mcap", cell, coarse, "-o"];
+    place.done(&[&render[..], &["p.png", "--document", "x.maul"]].concat());
     std::fs::write(place.path("strokes.txt"), "0 1 2 .5\n0.1 2 2 .5\n").expect("written");
     let load = "Ultramarine Blue";
+    let picture = [&render[..], &["list.txt"]].concat();
+    let ledger = [&render[..], &["p.png", "--ledger", "list.txt"]].concat();
     let commands: [&[&str]; 7] = [
         &["demo", "take", "-o", "list.txt"],
         &["take", "import", "strokes.txt", "-o", "list.txt"],
@@ -26,8 +30,8 @@ fn no_command_writes_over_a_file_of_another_kind_unless_it_is_told_to() {
             "--load",
             load,
         ],
-        &["render", "take.mcap", "-o", "list.txt"],
-        &["render", "take.mcap", "-o", "p.png", "--ledger", "list.txt"],
+        &picture,
+        &ledger,
         &[
             "painting", "export", "x.maul", "-o", "list.txt", "--format", "png",
         ],
@@ -51,7 +55,7 @@ fn no_command_writes_over_a_file_of_another_kind_unless_it_is_told_to() {
 #[test]
 fn a_rig_writes_over_no_file_of_another_kind_unless_its_command_is_told_to() {
     let place = Place::new();
-    let mut launcher = Launcher::up(&place, &["x.maul"]);
+    let mut launcher = Launcher::up(&place, &["x.maul", "--size", "256x256"]);
     launcher.wait_says("painting in");
     for command in [
         &["snapshot", "-o"][..],
@@ -86,7 +90,7 @@ fn a_rig_writes_over_no_file_of_another_kind_unless_its_command_is_told_to() {
 #[test]
 fn a_rig_whose_painting_is_removed_goes_on_beside_and_after_a_crash() {
     let place = Place::new();
-    let mut launcher = Launcher::up(&place, &["x.maul"]);
+    let mut launcher = Launcher::up(&place, &["x.maul", "--size", "256x256"]);
     launcher.wait_says("painting in");
     place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);
     for name in ["x.maul", "x.maul-wal"] {

@@ -209,7 +209,7 @@ fn a_take_that_is_played_meanwhile_paints_the_same_in_the_other_file() {
     ];
     let mut launcher = Launcher::start(place.maulstick(&[&play, &load[..]].concat()));
     launcher.wait_says("is up");
-    let begun = status(&place, |told| told.steps > 100);
+    let begun = status(&place, |told| told.steps > 30);
     assert!(begun.take, "{begun:?}");
     for args in [
         &["painting", "open", "b.maul"][..],

@@ -70,9 +70,10 @@ fn finish(place: &Place, launcher: &mut Launcher, what: &str) {
 #[test]
 fn playing_paints_what_rendering_paints_at_every_rate() {
     let place = Place::new();
-    place.short_demo("take.mcap", 4.0);
+    place.short_demo("take.mcap", 3.0);
     render(&place, "take.mcap");
-    for rate in ["0.5", "1", "4", "max"] {
+    // Others play at 1 and at 4.
+    for rate in ["0.5", "max"] {
         let mut launcher = play(&place, "take.mcap", rate);
         finish(&place, &mut launcher, &format!("rate {rate}"));
     }
@@ -159,9 +160,7 @@ fn a_take_is_played_again_when_a_node_ends_in_mid_stroke() {
     render(&place, "take.mcap");
     for (program, which) in [
         ("maulstick-paint", Signal::SIGKILL),
-        ("maulstick-brush", Signal::SIGKILL),
         ("maulstick-player", Signal::SIGKILL),
-        ("maulstick-paint", Signal::SIGTERM),
         ("maulstick-brush", Signal::SIGTERM),
         ("maulstick-player", Signal::SIGTERM),
     ] {

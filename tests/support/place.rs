@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use std::process::{Command, Output};
 
 /// Options of a picture that is painted in a fraction of the time.
-pub const COARSE: [&str; 2] = ["--cell-mm", "0.25"];
+pub const COARSE: [&str; 2] = ["--cell-mm", "0.5"];
 
 /// The program under test: that of the package that is tested.
 pub const MAULSTICK: &str = match [

@@ -38,18 +38,17 @@ fn the_mark_of_a_still_pen_lies_under_its_point() {
     for (kind, _) in LIBRARY {
         let mut bench = Bench::new(kind);
         let mut worst = [0.0f64; 4];
-        for lean in [0.0, 30.0, 60.0] {
-            for toward in [0.9, -0.785, 2.0] {
-                for pressure in PRESSURES {
-                    let mut at = |samples: u32| {
-                        let tilt = tilts(lean, toward);
-                        1e3 * beside(&mut bench, tilt, pressure, samples).unwrap_or(0.0)
-                    };
-                    let leans = 2 * usize::from(lean > 0.0);
-                    let (at_once, slowly) = (at(1), at(40));
-                    worst[leans] = worst[leans].max(at_once);
-                    worst[leans + 1] = worst[leans + 1].max(slowly);
-                }
+        let leaning = [30.0, 60.0].map(|lean| [0.9, -0.785, 2.0].map(|toward| (lean, toward)));
+        for (lean, toward) in leaning.into_iter().flatten().chain([(0.0, 0.0)]) {
+            for pressure in PRESSURES {
+                let mut at = |samples: u32| {
+                    let tilt = tilts(lean, toward);
+                    1e3 * beside(&mut bench, tilt, pressure, samples).unwrap_or(0.0)
+                };
+                let leans = 2 * usize::from(lean > 0.0);
+                let (at_once, slowly) = (at(1), at(40));
+                worst[leans] = worst[leans].max(at_once);
+                worst[leans + 1] = worst[leans + 1].max(slowly);
             }
         }
         let [at_once, slowly, leaning, leaning_slowly] = worst;

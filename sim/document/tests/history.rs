@@ -52,7 +52,7 @@ fn two_who_paint_at_once_do_not_cover_each_other() {
 }
 
 proptest! {
-    #![proptest_config(studio::cases(24))]
+    #![proptest_config(studio::cases(12))]
 
     #[test]
     fn all_undone_and_redone_is_as_it_was(seed in any::<u64>(), acts in 1usize..40) {

@@ -83,7 +83,7 @@ fn paint(path: &Path, seed: u64, acts: usize) -> Painter {
 }
 
 proptest! {
-    #![proptest_config(studio::cases(12))]
+    #![proptest_config(studio::cases(6))]
 
     #[test]
     fn a_record_executed_again_gives_the_painting(seed in any::<u64>(), acts in 20usize..70) {

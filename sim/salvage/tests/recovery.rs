@@ -242,7 +242,7 @@ fn hurt(bytes: &mut Vec<u8>, dice: &mut Dice) {
 }
 
 proptest! {
-    #![proptest_config(studio::cases(16))]
+    #![proptest_config(studio::cases(8))]
 
     #[test]
     fn what_is_whole_comes_back(seed in any::<u64>(), acts in 1usize..40) {
@@ -333,7 +333,7 @@ fn any_page_of_the_file_may_go() {
     let painted = Painted::new(5, 60);
     let mut damaged = 0;
     let pages = painted.bytes.len() / PAGE;
-    let step = pages.div_ceil(60);
+    let step = pages.div_ceil(20);
     for page in (0..pages).step_by(step) {
         let mut bytes = painted.bytes.clone();
         bytes[page * PAGE..(page + 1) * PAGE].fill(0);

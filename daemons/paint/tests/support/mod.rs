@@ -8,7 +8,7 @@
     reason = "shared by test programs, each of which uses a part"
 )]
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use maulstick_brush::BrushFile;
 use maulstick_brush_node::{BrushDevices, BrushNode, BrushSettings};
@@ -91,8 +91,9 @@ pub fn take() -> Vec<(u64, StylusSample)> {
     samples
 }
 
-pub fn offline() -> Vec<u8> {
-    offline_on(painting())
+pub fn offline() -> &'static [u8] {
+    static OFFLINE: LazyLock<Vec<u8>> = LazyLock::new(|| offline_on(painting()));
+    &OFFLINE
 }
 
 /// The take on a painting, without a bus.

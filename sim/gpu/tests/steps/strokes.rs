@@ -14,12 +14,12 @@ use crate::easel::{Easel, all, lifted, mixture, paint, stroke, volume};
 /// True if what two backends painted where there was as much before is alike.
 pub(crate) type Agree<'a> = &'a dyn Fn(&mut Painting, &mut Painting, u64) -> bool;
 
-/// Whoever looks at the painting meanwhile, and however often: the same bytes.
-pub(crate) fn have_the_same_bytes(easel: Easel<'_>) {
+/// Whoever looks at the painting meanwhile, and however often: the same bytes, after so many of 60 states of a stroke.
+pub(crate) fn have_the_same_bytes(easel: Easel<'_>, painted: usize) {
     let mut once = easel(Some(device()));
     let mut looked_at = easel(Some(device()));
-    let states = stroke(1, 0.0, 60);
-    paint(&mut once, "main", &states);
+    let states = &stroke(1, 0.0, 60)[..painted];
+    paint(&mut once, "main", states);
     for (number, state) in states.iter().enumerate() {
         paint(&mut looked_at, "main", std::slice::from_ref(state));
         if number % 7 == 3 {
@@ -30,26 +30,32 @@ pub(crate) fn have_the_same_bytes(easel: Easel<'_>) {
     assert!(one.iter().map(Vec::len).sum::<usize>() > 10_000);
     assert!(one == two, "the bytes differ");
     let mut other = easel(Some(device()));
-    paint(&mut other, "main", &stroke(1, 1e-4, 60));
+    paint(&mut other, "main", &stroke(1, 1e-4, 60)[..painted]);
     assert!(one != all(&mut other), "a fault passes");
 }
 
-/// Two brushes at once, one cleaned in its stroke, undone and redone: nothing is lost or made.
-pub(crate) fn balance_the_books(easel: Easel<'_>) {
+/// Two brushes at once, one cleaned in its stroke, undone and redone: nothing is lost or made, in so many of 24 states of each
+/// stroke.
+pub(crate) fn balance_the_books(easel: Easel<'_>, painted: usize) {
     let mut painting = easel(Some(device()));
-    let (one, two) = (stroke(1, 0.0, 24), stroke(1, 6.0, 24));
+    let part = |number, shift| {
+        let mut states = stroke(number, shift, 24);
+        states.truncate(painted);
+        states
+    };
+    let (one, two) = (part(1, 0.0), part(1, 6.0));
     for (a, b) in one.iter().zip(&two) {
         paint(&mut painting, "main", std::slice::from_ref(a));
         paint(&mut painting, "other", std::slice::from_ref(b));
     }
     assert_eq!(painting.report().quanta_missing, 0);
-    paint(&mut painting, "main", &stroke(2, 3.0, 24));
+    paint(&mut painting, "main", &part(2, 3.0));
     painting
         .apply(Clean {
             brush: BrushName::main(),
         })
         .expect("known");
-    paint(&mut painting, "main", &stroke(2, 5.0, 24));
+    paint(&mut painting, "main", &part(2, 5.0));
     assert_eq!(painting.report().quanta_missing, 0);
     let painted = all(&mut painting);
     painting.undo(None).expect("a step");
@@ -94,16 +100,17 @@ pub(crate) fn decisions(sequencer: &mut Sequencer) -> Vec<Decision> {
 }
 
 /// The device goes in mid-stroke, with steps on it that nobody has seen: the processor does them again,
-/// goes on, and at the stroke's end that is journalled.
-pub(crate) fn outlive_their_device(easel: Easel<'_>, agree: Agree<'_>) {
+/// goes on, and at the stroke's end that is journalled. So many of 60 states of each stroke are painted.
+pub(crate) fn outlive_their_device(easel: Easel<'_>, agree: Agree<'_>, painted: usize) {
     let before = volume(&mut easel(None));
-    for (strokes, lost_at) in [(1, 20), (2, 0)] {
+    for (strokes, lost_at) in [(1, painted / 3), (2, 0)] {
         let gpu = device();
         let mut sequencer = Sequencer::new(easel(Some(gpu.clone())));
         let mut cpu = easel(None);
         let mut seq = 0;
         for number in 1..=strokes {
             let mut states = stroke(number, 0.0, 60);
+            states.truncate(painted);
             states.push(lifted());
             for (i, state) in states.iter().enumerate() {
                 if (number, i) == (strokes, lost_at) {
@@ -113,10 +120,10 @@ pub(crate) fn outlive_their_device(easel: Easel<'_>, agree: Agree<'_>) {
                         Ok(()) | Err(GpuError::Lost(_))
                     ));
                 }
-                let (_, painted) = sequencer.state("main", &header(seq), state);
-                painted.expect("it fits");
+                let (_, taken) = sequencer.state("main", &header(seq), state);
+                taken.expect("it fits");
                 seq += 1;
-                if i == 40 {
+                if i == 2 * painted / 3 {
                     sequencer.painting_mut().commit();
                 }
             }

@@ -111,7 +111,7 @@ fn a_brush_of_4096_cells_paints() {
         cell_m: 1e-5,
         side: 320,
         brush_mm: 40.96,
-        ways_m: &[[-0.002, 0.0], [0.002, 0.0]],
+        ways_m: &[[-0.001, 0.0], [0.001, 0.0]],
         ..USUAL
     };
     case.holds();
@@ -138,7 +138,7 @@ fn a_step_of_64_cells_paints() {
         cell_m: 2.5e-4 * 4.0 / 64.0,
         side: 512,
         flags: solve_flags::FOUR_TIMES,
-        ways_m: &[[-0.004, 0.0], [0.004, 0.001]],
+        ways_m: &[[-0.002, 0.0], [0.002, 0.0005]],
         ..USUAL
     };
     let traits = BrushTraits::of(&case.brush(), case.cell_m, 1.0).doubled(2);

@@ -63,7 +63,9 @@ fn a_dry_brush_catches_on_the_tooth() {
     );
 }
 
+/// Short: [`a_dry_brush_catches_on_the_tooth`].
 #[test]
+#[ignore = "long: a scumble over all of a dry relief"]
 fn a_scumble_catches_on_ridges() {
     holds(
         marks::scumble,

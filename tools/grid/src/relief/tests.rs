@@ -1,6 +1,7 @@
 //! What the runs over relief assert, and the faults that they must find.
 
 use super::*;
+use crate::tests::SEVENTH;
 use maulstick_haptics::plant::Hand;
 
 fn went(runs: impl IntoIterator<Item = ReliefRun>) -> Vec<(ReliefRun, ReliefOutcome)> {
@@ -12,9 +13,10 @@ fn most(all: &[(ReliefRun, ReliefOutcome)], of: impl Fn(&ReliefOutcome) -> f64) 
     all.iter().map(|(_, it)| of(it)).fold(0.0, f64::max)
 }
 
-fn every_hand_is_still(ground: Ground) {
-    let runs = relief_grid(Path::Servo);
-    let all = went(runs.into_iter().filter(|run| run.ground == ground));
+/// Goes through the runs over a ground in strides, of which as many must be good.
+fn every_hand_is_still(ground: Ground, stride: usize, count: usize) {
+    let runs = relief_grid(Path::Servo).into_iter();
+    let all = went(runs.filter(|run| run.ground == ground).step_by(stride));
     let bad: Vec<_> = all.iter().filter(|(run, it)| !run.is_good(it)).collect();
     for (run, outcome) in bad.iter().take(10) {
         println!("{run:?}: {outcome:?}");
@@ -38,22 +40,30 @@ fn every_hand_is_still(ground: Ground) {
         all.iter().map(soft).fold(0.0, f64::max) * 1e2,
         most(&all, |it| it.across_n)
     );
-    assert_eq!((all.len(), bad.len()), (675, 0), "{ground:?}");
+    assert_eq!((all.len(), bad.len()), (count, 0), "{ground:?}");
 }
 
 #[test]
 fn every_hand_is_still_on_rough_ground_and_gets_no_energy_of_it() {
-    every_hand_is_still(Ground::Rough);
+    every_hand_is_still(Ground::Rough, SEVENTH, 97);
 }
 
 #[test]
 fn every_hand_is_still_on_a_ridge_and_gets_no_energy_of_it() {
-    every_hand_is_still(Ground::Ridge);
+    every_hand_is_still(Ground::Ridge, SEVENTH, 97);
 }
 
 #[test]
 fn every_hand_is_still_at_an_edge_and_gets_no_energy_of_it() {
-    every_hand_is_still(Ground::Edge);
+    every_hand_is_still(Ground::Edge, SEVENTH, 97);
+}
+
+#[test]
+#[ignore = "long: 2,025 runs"]
+fn every_hand_of_all_runs_is_still_on_every_ground() {
+    for ground in [Ground::Rough, Ground::Ridge, Ground::Edge] {
+        every_hand_is_still(ground, 1, 675);
+    }
 }
 
 fn some(stiffness: f64, ground: Ground, path: Path) -> impl Iterator<Item = ReliefRun> {
@@ -69,12 +79,10 @@ fn a_force_from_afar_and_none_are_found_out() {
         let sent =
             went(some(500.0, ground, Path::Sent).filter(|it| it.run.hand == Hand::FINGERTIP));
         assert!(sent.iter().all(|(run, it)| !run.is_good(it)), "{ground:?}");
-        let nothing = went(some(300.0, ground, Path::Nothing));
-        let still = nothing
-            .iter()
-            .filter(|(it, _)| it.run.motion == Motion::Still);
-        assert!(still.clone().count() > 20);
-        for (run, outcome) in still {
+        let nothing = some(300.0, ground, Path::Nothing);
+        let still = went(nothing.filter(|it| it.run.motion == Motion::Still));
+        assert!(still.len() > 20);
+        for (run, outcome) in &still {
             assert!(!run.is_good(outcome), "{run:?}: {outcome:?}");
         }
     }

@@ -97,17 +97,17 @@ fn both_backends_paint_the_same_strokes() {
 
 #[test]
 fn the_same_stroke_has_the_same_bytes() {
-    strokes::have_the_same_bytes(&easel);
+    strokes::have_the_same_bytes(&easel, 60);
 }
 
 #[test]
 fn the_books_balance() {
-    strokes::balance_the_books(&easel);
+    strokes::balance_the_books(&easel, 24);
 }
 
 #[test]
 fn a_lost_device_loses_no_paint() {
-    strokes::outlive_their_device(&easel, &agree);
+    strokes::outlive_their_device(&easel, &agree, 60);
     // A spline goes through the step before, too.
-    strokes::outlive_their_device(&|gpu| stroking(Stroker::Spline, gpu), &agree);
+    strokes::outlive_their_device(&|gpu| stroking(Stroker::Spline, gpu), &agree, 60);
 }

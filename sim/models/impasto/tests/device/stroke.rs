@@ -67,15 +67,15 @@ fn both_backends_paint_the_same_on_fine_cells() {
 
 #[test]
 fn the_same_stroke_has_the_same_bytes() {
-    strokes::have_the_same_bytes(&easel);
+    strokes::have_the_same_bytes(&easel, 30);
 }
 
 #[test]
 fn the_books_balance() {
-    strokes::balance_the_books(&easel);
+    strokes::balance_the_books(&easel, 12);
 }
 
 #[test]
 fn a_lost_device_loses_no_paint() {
-    strokes::outlive_their_device(&easel, &agree);
+    strokes::outlive_their_device(&easel, &agree, 60);
 }

@@ -107,52 +107,63 @@ fn the_first_steps_leave_the_paint_where_the_processor_does() {
     assert!(off < ELSEWHERE, "{off:e}");
 }
 
-/// Two strokes, the second one across what the first has left.
-fn strokes_of(painting: &mut Painting) {
-    paint(painting, "main", &stroke(1, 0.0, 24));
-    paint(painting, "main", &stroke(2, 1.5, 24));
+/// So many of 24 states of two strokes that are `shift` mm higher, the second one across what the first has left.
+fn strokes_of(painting: &mut Painting, states: usize, shift: f64) {
+    paint(painting, "main", &stroke(1, shift, 24)[..states]);
+    paint(painting, "main", &stroke(2, 1.5 + shift, 24)[..states]);
+}
+
+/// Paints so many states of the strokes on both backends; what the processor painted, and the volume before.
+fn painted_the_same(states: usize) -> (Painting, u64) {
+    let (mut cpu, mut gpu) = (easel(None), easel(Some(device())));
+    let before = volume(&mut cpu);
+    assert_eq!(volume(&mut gpu), before);
+    strokes_of(&mut cpu, states, 0.0);
+    strokes_of(&mut gpu, states, 0.0);
+    assert!(gpu.backend().starts_with("gpu "), "{}", gpu.backend());
+    assert!(agree(&mut cpu, &mut gpu, before));
+    assert_eq!(gpu.report().quanta_missing, 0);
+    let (cells, same) = (gpu.work().1 as f64, cpu.work().1 as f64);
+    assert!((cells / same - 1.0).abs() < 0.01, "{cells} {same}");
+    // A stroke a fifth of a cell beside it is another one.
+    let mut beside = easel(None);
+    strokes_of(&mut beside, states, 0.05);
+    assert!(!agree(&mut beside, &mut gpu, before), "a fault passes");
+    (cpu, before)
 }
 
 #[test]
 fn both_backends_paint_the_same_strokes() {
-    let (mut cpu, mut gpu) = (easel(None), easel(Some(device())));
-    let before = volume(&mut cpu);
-    assert_eq!(volume(&mut gpu), before);
-    strokes_of(&mut cpu);
-    strokes_of(&mut gpu);
-    assert!(gpu.backend().starts_with("gpu "), "{}", gpu.backend());
-    let alike = agree(&mut cpu, &mut gpu, before);
-    assert_eq!(gpu.report().quanta_missing, 0);
-    let (cells, same) = (gpu.work().1 as f64, cpu.work().1 as f64);
-    assert!((cells / same - 1.0).abs() < 0.01, "{cells} {same}");
+    painted_the_same(12);
+}
+
+/// A weight that is wrong by a hundredth shows in whole strokes too.
+#[test]
+#[ignore = "long: whole strokes"]
+fn both_backends_paint_the_same_whole_strokes() {
+    let (mut cpu, before) = painted_the_same(24);
     let mut faulty = tuned(&Tuning {
         fault: Some(("fault_link", 1.01)),
         ..Tuning::default()
     });
-    strokes_of(&mut faulty);
+    strokes_of(&mut faulty, 24, 0.0);
     assert!(!agree(&mut cpu, &mut faulty, before), "a fault passes");
     assert_eq!(faulty.report().quanta_missing, 0);
-    // A stroke a fifth of a cell beside it is another one.
-    let mut beside = easel(None);
-    paint(&mut beside, "main", &stroke(1, 0.05, 24));
-    paint(&mut beside, "main", &stroke(2, 1.55, 24));
-    assert!(!agree(&mut beside, &mut gpu, before), "a fault passes");
-    assert!(alike);
 }
 
 #[test]
 fn the_same_stroke_has_the_same_bytes() {
-    strokes::have_the_same_bytes(&easel);
+    strokes::have_the_same_bytes(&easel, 12);
 }
 
 #[test]
 fn the_books_balance() {
-    strokes::balance_the_books(&easel);
+    strokes::balance_the_books(&easel, 8);
 }
 
 #[test]
 fn a_lost_device_loses_no_paint() {
-    strokes::outlive_their_device(&easel, &agree);
+    strokes::outlive_their_device(&easel, &agree, 15);
 }
 
 /// Two strokes in a window's memory of so many bytes: what was decided, the backend, and the painting.
@@ -164,7 +175,7 @@ fn limited(most_bytes: u64) -> (Vec<Decision>, Painting) {
     let mut sequencer = Sequencer::new(tuned(&tuning));
     for number in 1..=2 {
         let mut states = stroke(number, 0.0, 24);
-        states.truncate(8);
+        states.truncate(4);
         states.push(lifted());
         for (seq, state) in states.iter().enumerate() {
             let header = strokes::header(100 * number + seq as u64);

@@ -32,8 +32,8 @@ fn whatever_the_brush_does_all_is_finite() {
     let grid = Grid::walled([12, 12, 8]);
     let fill = filled(&grid, |_, _| 4.2);
     let mut flow = GpuFlow::new(device(), &grid, Effort::default()).expect("made");
-    for viscosity in [1e-6, 1e-2, 1e2] {
-        for seconds in [1e-6, 1e-2, 1.0] {
+    for viscosity in [1e-6, 1e2] {
+        for seconds in [1e-6, 1.0] {
             for yields in [0.0, 1e-2] {
                 let at_rest: [Vec<f32>; 3] = std::array::from_fn(|_| grid.field());
                 flow.write(&at_rest, &grid.field()).expect("written");

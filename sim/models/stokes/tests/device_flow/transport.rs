@@ -124,7 +124,7 @@ fn no_quantum_is_missing_after_many_steps() {
         paints.iter().map(sum).collect()
     };
     let before = sums(&paints);
-    for step in 0..200u8 {
+    for step in 0..80u8 {
         let there = step % 40;
         let (x, speed) = if there < 20 {
             (2.0 + 0.2 * f32::from(there), 0.01)

@@ -121,7 +121,7 @@ fn check(painting: &mut Painting) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(32))]
+    #![proptest_config(ProptestConfig::with_cases(16))]
 
     #[test]
     fn the_books_balance_whatever_is_done(acts in prop::collection::vec(act(), 1..24)) {
@@ -163,10 +163,8 @@ proptest! {
     }
 }
 
-/// A hundred thousand steps of two brushes and whatever a painter does meanwhile: not a quantum is
-/// missing, and a second run gives the same.
-#[test]
-fn a_hundred_thousand_steps_lose_nothing() {
+/// Steps of two brushes and whatever a painter does meanwhile: not a quantum is missing, and a second run gives the same.
+fn lose_nothing(steps: u64) {
     let run = || {
         let mut runner = TestRunner::new_with_rng(
             ProptestConfig::default(),
@@ -175,7 +173,7 @@ fn a_hundred_thousand_steps_lose_nothing() {
         let mut painting = painting(10.0);
         let mut strokes = [1, 1];
         let mut acts = 0;
-        while painting.work().0 < 100_000 {
+        while painting.work().0 < steps {
             let act = act().new_tree(&mut runner).expect("an act").current();
             perform(&mut painting, &mut strokes, &act);
             acts += 1;
@@ -189,6 +187,17 @@ fn a_hundred_thousand_steps_lose_nothing() {
         (report.paints_m3, store.counts(), acts)
     };
     assert_eq!(with_threads(2, run), run(), "on two cores and on one");
+}
+
+#[test]
+fn ten_thousand_steps_lose_nothing() {
+    lose_nothing(10_000);
+}
+
+#[test]
+#[ignore = "long: 100,000 steps"]
+fn a_hundred_thousand_steps_lose_nothing() {
+    lose_nothing(100_000);
 }
 
 const LOW: Place = Place {
