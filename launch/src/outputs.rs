@@ -92,12 +92,8 @@ pub fn named_by(config: &RigConfig) -> Vec<UsedFile> {
 pub fn check_outputs(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), UserError> {
     check_apart(outputs, inputs)?;
     let companion = outputs.iter().find(|output| is_companion(&output.path));
-    if let Some(UsedFile { what, path, .. }) = companion {
-        return Err(
-            UserError::usage("a file with this extension may belong to a painting")
-                .at(path.display().to_string())
-                .help(format!("give {what} another name")),
-        );
+    if let Some(output) = companion {
+        return Err(Clash::Companion(output.clone()).into());
     }
     outputs.iter().try_for_each(|UsedFile { path, kind, .. }| {
         check_writable(path, *kind).map_err(|error| UserError::writing(path, &error))
@@ -150,25 +146,57 @@ impl Relayed {
     }
 }
 
+/// An output that may not have its name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Clash {
+    /// It is this input.
+    Input(UsedFile, UsedFile),
+    /// It is this other output.
+    Output(UsedFile, UsedFile),
+    /// It is a file that SQLite may keep beside a painting.
+    Companion(UsedFile),
+}
+
+impl From<Clash> for UserError {
+    fn from(clash: Clash) -> Self {
+        let (output, what) = match clash {
+            Clash::Input(output, input) => {
+                let what = format!("{} would take the place of {}", output.what, input.what);
+                (output, what)
+            }
+            Clash::Output(output, other) => {
+                let what = format!("{} and {} would be one file", other.what, output.what);
+                (output, what)
+            }
+            Clash::Companion(output) => {
+                let what = "a file with this extension may belong to a painting";
+                (output, what.to_owned())
+            }
+        };
+        Self::usage(what)
+            .at(output.path.display().to_string())
+            .help(format!("give {} another name", output.what))
+    }
+}
+
 /// Sees that no output is an input or another output, wherever links lead.
 ///
 /// # Errors
-/// A [`UserError`] where one is.
-pub fn check_apart(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), UserError> {
+/// A [`Clash`] where one is.
+pub fn check_apart(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), Clash> {
     for (number, output) in outputs.iter().enumerate() {
-        let is_same = |other: &&UsedFile| is_same(&output.path, &other.path);
-        let what = &output.what;
-        let what = match (
-            inputs.iter().find(is_same),
-            outputs[..number].iter().find(is_same),
-        ) {
-            (Some(input), _) => format!("{what} would take the place of {}", input.what),
-            (None, Some(other)) => format!("{} and {what} would be one file", other.what),
-            (None, None) => continue,
+        let same = |others: &[UsedFile]| {
+            let mut others = others.iter();
+            others
+                .find(|other| is_same(&output.path, &other.path))
+                .cloned()
         };
-        return Err(UserError::usage(what)
-            .at(output.path.display().to_string())
-            .help(format!("give {} another name", output.what)));
+        if let Some(input) = same(inputs) {
+            return Err(Clash::Input(output.clone(), input));
+        }
+        if let Some(other) = same(&outputs[..number]) {
+            return Err(Clash::Output(output.clone(), other));
+        }
     }
     Ok(())
 }
@@ -203,26 +231,27 @@ mod tests {
         std::os::unix::fs::symlink(path("one"), path("link")).expect("a link");
         std::fs::create_dir(path("in")).expect("made");
         let file = |name: &str| UsedFile::new(format!("the {name}"), path(name));
-        let check = |outputs: &[UsedFile], inputs: &[UsedFile]| {
-            check_outputs(outputs, inputs).map_err(|fault| fault.to_string())
-        };
-        let wrong = |outputs: &[UsedFile], inputs: &[UsedFile]| {
-            check(outputs, inputs).expect_err("refused")
-        };
-        let text = wrong(&[file("link")], &[file("one")]);
-        assert!(text.contains("the link would take the place of the one"));
-        assert!(text.contains("-->") && text.contains("help: give the link another name"));
-        assert!(wrong(&[file("in/../one")], &[file("link")]).contains("take the place"));
-        let twice = wrong(&[file("new"), file("in/../new")], &[]);
-        assert!(twice.contains("would be one file"), "{twice}");
+        let input = |output: &str, input: &str| Clash::Input(file(output), file(input));
+        for (output, other) in [("link", "one"), ("in/../one", "link")] {
+            let clash = check_apart(&[file(output)], &[file(other)]);
+            assert_eq!(clash, Err(input(output, other)));
+        }
+        let twice = check_apart(&[file("new"), file("in/../new")], &[]);
+        let one_file = Clash::Output(file("in/../new"), file("new"));
+        assert_eq!(twice, Err(one_file));
+        let check = check_outputs;
         check(&[file("new"), file("newer")], &[file("one")]).expect("files of their own");
         std::fs::hard_link(path("one"), path("second")).expect("a second name");
-        assert!(wrong(&[file("second")], &[file("one")]).contains("take the place of the one"));
-        let null = UsedFile::new("the picture", "/dev/null");
-        assert!(wrong(&[null], &[]).contains("name a file"));
-        assert!(wrong(&[file("a.maul-wal")], &[]).contains("may belong to a painting"));
-        let picture = file("one").of(Kind::Png);
-        assert!(wrong(&[picture], &[]).contains("`--overwrite`"));
+        let linked = check(&[file("second")], &[file("one")]);
+        assert_eq!(linked, Err(input("second", "one").into()));
+        let companion = check(&[file("a.maul-wal")], &[]);
+        assert_eq!(companion, Err(Clash::Companion(file("a.maul-wal")).into()));
+        for (output, kind) in [("/dev/null".into(), Kind::Own), (path("one"), Kind::Png)] {
+            let refused = check_writable(&output, kind).expect_err("refused");
+            let output = UsedFile::new("the picture", output).of(kind);
+            let error = UserError::writing(&output.path, &refused);
+            assert_eq!(check(&[output], &[]), Err(error));
+        }
         assert!(!path("new").exists());
     }
 

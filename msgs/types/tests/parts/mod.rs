@@ -1,5 +1,7 @@
 //! Parts of the messages whose bytes are golden.
 
+pub(crate) mod scene;
+
 use maulstick_types::command::{
     BrushCommand, Command, ExportOrder, FileCommand, NewCanvas, RigCommand, SaveAs, SessionCommand,
     TakeCommand,
@@ -149,10 +151,10 @@ pub(crate) fn takes() -> [TakeCommand; 3] {
     ]
 }
 
-/// The commands about files, and those of other nodes.
-pub(crate) fn files() -> [Command; 13] {
+/// An example of a new canvas.
+fn canvas() -> NewCanvas {
     let material = |name: &str| MaterialName::new(name).expect("a name");
-    let canvas = NewCanvas {
+    NewCanvas {
         width_m: 0.3,
         height_m: 0.2,
         cell_m: 2.5e-4,
@@ -160,7 +162,11 @@ pub(crate) fn files() -> [Command; 13] {
         tooth: material("linen"),
         tooth_seed: 1,
         stain_m: 3e-6,
-    };
+    }
+}
+
+/// The commands about files, and those of other nodes.
+pub(crate) fn files() -> [Command; 13] {
     let order = ExportOrder {
         format: "stl".into(),
         step: 4,
@@ -200,7 +206,7 @@ pub(crate) fn files() -> [Command; 13] {
         .into(),
         RigCommand::New {
             path: Some(path("/b.maul")),
-            canvas,
+            canvas: canvas(),
             forget: false,
         }
         .into(),

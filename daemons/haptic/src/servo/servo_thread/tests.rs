@@ -272,6 +272,13 @@ fn wall() -> Contact {
     wall
 }
 
+/// Difference of two states, m + m/s + rad.
+fn apart(one: &HandleState, other: &HandleState) -> f64 {
+    (one.position - other.position).length()
+        + (one.velocity - other.velocity).length()
+        + one.orientation.angle_between(other.orientation)
+}
+
 #[test]
 fn a_turned_shifted_and_scaled_device_feels_the_desk_where_it_is() {
     // What the hand does on the desk: the tip 4 mm below the wall, sliding along x.
@@ -317,13 +324,7 @@ fn a_turned_shifted_and_scaled_device_feels_the_desk_where_it_is() {
             seen == 2
         });
         let felt = felt.expect("the force on the hand");
-        let off = (felt.reading.handle.position - on_desk.position).length()
-            + (felt.reading.handle.velocity - on_desk.velocity).length()
-            + felt
-                .reading
-                .handle
-                .orientation
-                .angle_between(on_desk.orientation);
+        let off = apart(&felt.reading.handle, &on_desk);
         assert!(off < 1e-7, "{:?}", felt.reading.handle);
         assert!((felt.tick.cap_n - 3.0).abs() < 1e-12, "the device's own");
         let written = DVec3::from_array(

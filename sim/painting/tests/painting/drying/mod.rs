@@ -253,11 +253,11 @@ fn a_drying_ends_when_it_is_told_to_and_there_is_one_at_a_time() {
     assert_eq!(counts(&mut sequencer), before);
     let mut empty = self::sequencer();
     let refused = empty.edit(dry_over(60)).expect_err("bare");
-    assert!(refused.to_string().contains("nothing is wet"));
+    assert!(refused == EditError::NothingWet(None));
 }
 
-#[test]
-fn the_newest_layer_becomes_wet_in_a_region_and_an_opacity_is_not_lost() {
+/// A painting with a layer `low` and one `high` on it, and the counts of the lower one.
+fn two_layers() -> (Sequencer, Counts) {
     let mut sequencer = painted();
     let all = both(counts(&mut sequencer));
     let dry = |name: &str| dry(1.0, name, None);
@@ -265,6 +265,12 @@ fn the_newest_layer_becomes_wet_in_a_region_and_an_opacity_is_not_lost() {
     sequencer.edit(load("Pyrrole Red")).expect("loaded");
     stroke(&mut sequencer, 2, 3, 11.0, true);
     sequencer.edit(dry("high")).expect("wet");
+    (sequencer, all)
+}
+
+#[test]
+fn a_veiled_layer_stays_dry() {
+    let (mut sequencer, _) = two_layers();
     let opacity = |layer: &str, opacity: f32| Opacity {
         layer: layer.parse().expect("valid"),
         opacity: OpacityFactor::new(opacity).expect("in range"),
@@ -283,7 +289,12 @@ fn the_newest_layer_becomes_wet_in_a_region_and_an_opacity_is_not_lost() {
     assert!(
         unknown.to_string().contains("'sky'") && unknown.advice().to_string().contains("2 (high)")
     );
+    sequencer.edit(wet(1, None)).expect("no veil");
+}
 
+#[test]
+fn layers_get_names() {
+    let (mut sequencer, _) = two_layers();
     let names = |sequencer: &Sequencer| -> Vec<String> {
         let layers = &sequencer.painting().scene().layers;
         layers.iter().map(|layer| layer.name.clone()).collect()
@@ -298,7 +309,11 @@ fn the_newest_layer_becomes_wet_in_a_region_and_an_opacity_is_not_lost() {
     assert_eq!(names(&sequencer), ["low", "high"]);
     let unknown = sequencer.edit(name(3)).expect_err("no layer");
     assert!(unknown.to_string().contains('3') && unknown.advice().to_string().contains("2 (high)"));
+}
 
+#[test]
+fn the_newest_layer_becomes_wet_in_a_region() {
+    let (mut sequencer, all) = two_layers();
     let region: Region = "6,6,10x10".parse().expect("a region");
     assert_eq!(
         sequencer
@@ -321,7 +336,7 @@ fn the_newest_layer_becomes_wet_in_a_region_and_an_opacity_is_not_lost() {
     sequencer.edit(wet(0, None)).expect("all");
     assert_eq!((layers(&sequencer).len(), depth(&sequencer)), (0, 0));
     let nothing = sequencer.edit(wet(0, None)).expect_err("all is wet");
-    assert!(nothing.to_string().contains("nothing has dried"));
+    assert!(nothing == EditError::NothingDry(None));
     for _ in 0..2 {
         sequencer.edit(Undo { brush: None }).expect("done");
     }
