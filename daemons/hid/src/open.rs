@@ -12,7 +12,7 @@ use crate::evdev::ports::EventDevices;
 use crate::hidraw::Hidraw;
 use crate::layout::Layout;
 use crate::spacemouse::{LIGHT, SpaceMouse, VENDORS};
-use crate::unfit::{Unfit, UnfitDevice};
+use crate::unfit::{MOUSE_WORD, TABLET_WORD, Unfit, UnfitDevice};
 use crate::wacom::Wacom;
 use maulstick_device::pen::Reading;
 
@@ -43,10 +43,10 @@ impl Kind {
         }
     }
 
-    pub(crate) fn word(self) -> &'static str {
+    fn word(self) -> &'static str {
         match self {
-            Self::Pen | Self::EventPen => "pen tablet",
-            Self::SpaceMouse => "6-DOF mouse",
+            Self::Pen | Self::EventPen => TABLET_WORD,
+            Self::SpaceMouse => MOUSE_WORD,
         }
     }
 

@@ -4,7 +4,6 @@ use maulstick_rig::UserError;
 
 use crate::descriptor::{DescriptorError, describe};
 use crate::device_source::Identity;
-use crate::open::Kind;
 
 /// A device and why it cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,6 +39,10 @@ impl From<DescriptorError> for Unfit {
     }
 }
 
+/// A tablet, in errors.
+pub(crate) const TABLET_WORD: &str = "pen tablet";
+/// A 6-DOF mouse, in errors.
+pub(crate) const MOUSE_WORD: &str = "6-DOF mouse";
 /// Advice on a device that is of another kind.
 const OTHER: &str = "choose another device by `address` in rig.toml";
 /// Advice on a HID device that is no tablet.
@@ -51,17 +54,17 @@ const LISTED: &str = "choose another device by `address` in rig.toml: `maulstick
 
 impl From<UnfitDevice> for UserError {
     fn from(UnfitDevice { identity, why }: UnfitDevice) -> Self {
-        let other = |usages: &[(u16, u16)], kind: Kind| {
-            let (is, no) = (describe(usages), kind.word());
+        let other = |usages: &[(u16, u16)], no: &str| {
+            let is = describe(usages);
             format!("{identity} is {is}, no {no}")
         };
         match why {
-            Unfit::NoPen(usages) => Self::failure(other(&usages, Kind::Pen)).help(TABLET),
+            Unfit::NoPen(usages) => Self::failure(other(&usages, TABLET_WORD)).help(TABLET),
             Unfit::NoPlace => {
                 let what = format!("{identity} is a pen whose reports do not say where it is");
                 Self::failure(what).help(TABLET)
             }
-            Unfit::NoMouse(usages) => Self::failure(other(&usages, Kind::SpaceMouse)).help(OTHER),
+            Unfit::NoMouse(usages) => Self::failure(other(&usages, MOUSE_WORD)).help(OTHER),
             Unfit::UnknownMaker => {
                 let what = format!("{identity} is a 6-DOF mouse of an unknown maker");
                 Self::failure(what).help(OTHER)

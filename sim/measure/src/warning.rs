@@ -104,25 +104,7 @@ impl fmt::Display for Warning {
                 f,
                 "line {line}: '{sample}' reads {reading:.3}, more than a perfect white: K is taken as almost 0 there"
             ),
-            Self::Indeterminate {
-                paint,
-                white,
-                rms,
-                most,
-                nm,
-            } => {
-                write!(
-                    f,
-                    "'{paint}' is ill-determined: its tints may be off by {rms:.2} in reflectance \
-                     ({most:.2} near {nm:.0} nm); what is missing was filled in from a usual paint; \
-                     add readings of it by itself"
-                )?;
-                if paint == white {
-                    Ok(())
-                } else {
-                    write!(f, ", and mixed 1:1 and 1:10 with '{white}'")
-                }
-            }
+            Self::Indeterminate { .. } => self.indeterminate(f),
             Self::Suspect {
                 line,
                 sample,
@@ -133,6 +115,32 @@ impl fmt::Display for Warning {
                 "line {line}: '{sample}' is off by ΔE₀₀ {delta_e:.1}, and without it the others fit {gain:.1} times \
                  as well: check its shares and its reading"
             ),
+        }
+    }
+}
+
+impl Warning {
+    fn indeterminate(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self::Indeterminate {
+            paint,
+            white,
+            rms,
+            most,
+            nm,
+        } = self
+        else {
+            return Ok(());
+        };
+        write!(
+            f,
+            "'{paint}' is ill-determined: its tints may be off by {rms:.2} in reflectance \
+             ({most:.2} near {nm:.0} nm); what is missing was filled in from a usual paint; \
+             add readings of it by itself"
+        )?;
+        if paint == white {
+            Ok(())
+        } else {
+            write!(f, ", and mixed 1:1 and 1:10 with '{white}'")
         }
     }
 }
