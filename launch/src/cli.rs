@@ -360,10 +360,16 @@ mod tests {
         assert_eq!(commands, listed);
         assert!(commands.len() <= 24, "fewer doors: {commands:?}");
         let help = grouped(program).render_help().to_string();
-        assert!(
-            help.contains("Rig:\n  up          Start a rig and keep it running\n"),
-            "{help}"
-        );
+        let lines: Vec<&str> = help.lines().collect();
+        for (heading, names) in HEADINGS {
+            let heading = format!("{heading}:");
+            let place = lines.iter().position(|line| *line == heading);
+            let below = &lines[1 + place.expect("a heading")..];
+            let listed = below
+                .iter()
+                .map_while(|line| line.split_whitespace().next());
+            assert_eq!(listed.collect::<Vec<_>>(), *names, "{help}");
+        }
     }
 
     #[test]

@@ -303,10 +303,7 @@ fn hostile_messages_are_counted_and_dropped() {
     place.done(&["load", "Bone Black"]);
     assert_eq!(on_canvas(&place), 0.0);
     let said = launcher.said();
-    assert!(said.contains("schema") && said.contains("is not"), "{said}");
-    assert!(
-        said.matches("is not").count() < 20,
-        "it says it once: {said}"
-    );
+    let warnings = said.lines().filter(|line| line.contains("schema")).count();
+    assert!((1..20).contains(&warnings), "it says it once: {said}");
     bus.close();
 }

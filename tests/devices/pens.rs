@@ -29,7 +29,7 @@ fn a_recorded_pen_paints_and_is_recorded_as_it_was() {
     let trouble = hear(&mut status, |told| !told.trouble.is_empty())
         .expect("told")
         .trouble;
-    assert!(trouble.contains("no 0001:0001 is plugged in"), "{trouble}");
+    assert!(trouble.contains("0001:0001"), "{trouble}");
     place.done(&["load", "Bone Black"]);
     let recording = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/examples/pen.hid");
     let mut samples = listen::<StylusSample>(&bus, &topics.sample("tablet"), Qos::RealTime);

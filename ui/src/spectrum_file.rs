@@ -40,7 +40,7 @@ pub(crate) fn light(path: &Path) -> Result<Illuminant, UserError> {
     let text = text(path, row)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     Illuminant::parse(&stem, &text).map_err(|error| {
-        UserError::usage(error.what)
+        UserError::usage(error.fault.to_string())
             .at(format!("{}:{}", path.display(), error.line))
             .help(tr!(
                 "write {row}, a comma between; the wavelengths rise",
@@ -57,7 +57,7 @@ pub(crate) fn reflectance(path: &Path) -> Result<String, UserError> {
     let row = tr!("a line for each wavelength in nm and its reflectance");
     let text = text(path, row)?;
     Reflectance::parse(&text).map_err(|error| {
-        UserError::usage(error.what)
+        UserError::usage(error.fault.to_string())
             .at(format!("{}:{}", path.display(), error.line))
             .help(tr!(
                 "write {row}, 0 to 1, a comma between; the wavelengths rise",

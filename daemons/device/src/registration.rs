@@ -376,8 +376,7 @@ mod tests {
         for handle in [DVec3::Z, leaning, DVec3::ZERO] {
             assert_eq!(check_side(&[origin, right, up], handle), Ok(()));
         }
-        let refused = check_side(&[origin, up, right], leaning).expect_err("the other way round");
-        assert!(refused.what.contains("from behind"), "{refused}");
+        assert!(check_side(&[origin, up, right], leaning).is_err());
     }
 
     #[test]

@@ -166,8 +166,12 @@ fn what_lies_between_damaged_places_is_kept() {
         bytes.insert(desk.whole.len() / share, 0x55);
     }
     let salvage = salvage(&desk.with(&bytes)).expect("something is left");
-    let damage = salvage.damage.as_deref().expect("told");
-    assert!(damage.contains("other places"), "{damage}");
+    assert!(
+        salvage
+            .damage
+            .as_ref()
+            .is_some_and(|damage| damage.more > 1)
+    );
     assert!(desk.right(&salvage) > 3000, "{}", desk.right(&salvage));
     let times = salvage.take.samples.windows(2);
     assert!(

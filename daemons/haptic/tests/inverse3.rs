@@ -15,9 +15,10 @@ use std::time::{Duration, Instant};
 use counting::allocations;
 use glam::DVec3;
 use maulstick_haptic::device::driver::{DeviceError, Driver, Reading, Wrench};
-use maulstick_haptic::drivers::inverse3;
+use maulstick_haptic::drivers::inverse3::address::Address;
+use maulstick_haptic::drivers::inverse3::connect_error::Refusal;
+use maulstick_haptic::drivers::inverse3::{self, Inverse3};
 use maulstick_haptics::Switch;
-use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus::axes;
 use serde_json::{Value, json};
@@ -46,8 +47,14 @@ fn opened(address: &str) -> Box<dyn Driver> {
     inverse3::open(&at(address)).expect("an Inverse3").driver
 }
 
-fn fault(address: &str) -> UserError {
-    inverse3::open(&at(address)).map(|_| ()).expect_err(address)
+/// The reason why no device is connected to.
+fn refusal(address: &str) -> Refusal {
+    let address = Address::read(Some(address)).expect("an address");
+    let error = Inverse3::connect(&address)
+        .map(|_| ())
+        .expect_err("refused");
+    assert_eq!(error.url, address.url);
+    error.refusal
 }
 
 fn push(force: DVec3) -> Wrench {
@@ -324,21 +331,15 @@ fn of_two_devices_the_one_that_is_named_is_read_and_pushed() {
     let mut first = two(0.25);
     first["session_id"] = json!(1);
     let service = Service::start(Act::Say(first), move |_| Act::Say(two(0.25)));
-    let several = fault(&service.url);
-    assert!(
-        several.what.contains("several Inverse3s: 049D, 0AAA"),
-        "{}",
-        several.what
-    );
-    assert!(several.help.is_some_and(|help| help.contains("#id")));
-    let unknown = fault(&format!("{}#0BBB", service.url));
-    assert!(unknown.what.ends_with("sees no Inverse3 0BBB"));
-    assert!(unknown.help.is_some_and(|help| help.contains("049D, 0AAA")));
-    let grip = fault(&format!("{}#0AAA+9", service.url));
-    assert!(
-        grip.what.ends_with("sees no VerseGrip 9")
-            && grip.help.is_some_and(|h| h.contains("61548"))
-    );
+    let several = refusal(&service.url);
+    let there = ["049D", "0AAA"].map(str::to_owned).to_vec();
+    assert_eq!(several, Refusal::Several(there.clone()));
+    let unknown = refusal(&format!("{}#0BBB", service.url));
+    let no_device = Refusal::NoDevice("0BBB".to_owned(), there);
+    assert_eq!(unknown, no_device);
+    let grip = refusal(&format!("{}#0AAA+9", service.url));
+    let no_grip = Refusal::NoGrip("9".to_owned(), vec!["61548".to_owned()]);
+    assert_eq!(grip, no_grip);
 
     let mut driver = opened(&format!("{}#0AAA+61548", service.url));
     let read = reading(&mut *driver).expect("there").expect("new");

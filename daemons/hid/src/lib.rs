@@ -19,6 +19,7 @@
 //! | [`spacemouse`] | 6-DOF mice |
 //! | [`evdev`] | tablets through the kernel's event devices |
 //! | [`tablet`] | a tablet on the desk |
+//! | [`unfit`] | devices that cannot be read |
 //! | [`open`] | the device that `rig.toml` asks for |
 //! | [`probe`] | readings of a pen without a rig, for calibration |
 //! | [`report_stream`] | reports with their times, live or played |
@@ -61,6 +62,7 @@ pub mod spacemouse;
 pub mod spacemouse_node;
 pub mod stylus;
 pub mod tablet;
+pub mod unfit;
 
 pub use reports::{
     descriptor, device_source, hidraw, layout, recorder, recording, report_stream, units, wacom,

@@ -4,7 +4,7 @@ use maulstick_device::hid_collections::Collection;
 use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 
-use crate::descriptor::{self, describe};
+use crate::descriptor::{self, outermost};
 use crate::device_source::{Found, HidSource, Identity, Ports};
 use crate::evdev::capabilities::Capabilities;
 use crate::evdev::pen::EvdevPen;
@@ -12,6 +12,7 @@ use crate::evdev::ports::EventDevices;
 use crate::hidraw::Hidraw;
 use crate::layout::Layout;
 use crate::spacemouse::{LIGHT, SpaceMouse, VENDORS};
+use crate::unfit::{MOUSE_WORD, TABLET_WORD, Unfit, UnfitDevice};
 use crate::wacom::Wacom;
 use maulstick_device::pen::Reading;
 
@@ -44,8 +45,8 @@ impl Kind {
 
     fn word(self) -> &'static str {
         match self {
-            Self::Pen | Self::EventPen => "pen tablet",
-            Self::SpaceMouse => "6-DOF mouse",
+            Self::Pen | Self::EventPen => TABLET_WORD,
+            Self::SpaceMouse => MOUSE_WORD,
         }
     }
 
@@ -189,70 +190,49 @@ pub enum Means {
 /// Means of reading a device, by its numbers and its descriptor.
 ///
 /// # Errors
-/// A [`UserError`] that says what the device is instead.
-pub fn means(kind: Kind, identity: &Identity, bytes: &[u8]) -> Result<Means, UserError> {
-    match kind {
+/// An [`UnfitDevice`].
+pub fn means(kind: Kind, identity: &Identity, bytes: &[u8]) -> Result<Means, UnfitDevice> {
+    let means = match kind {
         Kind::Pen => hid_pen(identity, bytes),
-        Kind::EventPen => event_pen(identity, bytes),
+        Kind::EventPen => event_pen(bytes),
         Kind::SpaceMouse => space_mouse(identity, bytes),
-    }
+    };
+    means.map_err(|why| UnfitDevice {
+        identity: identity.clone(),
+        why,
+    })
 }
 
-/// Advice on a device that is of another kind.
-const OTHER: &str = "choose another device by `address` in rig.toml";
-
 /// The pen of a HID device.
-fn hid_pen(identity: &Identity, bytes: &[u8]) -> Result<Means, UserError> {
+fn hid_pen(identity: &Identity, bytes: &[u8]) -> Result<Means, Unfit> {
     let table = Wacom::of(identity.vendor, identity.product);
     if let Some(table) = table.filter(|table| table.fits(bytes)) {
         return Ok(Means::Pen(Decoder::Wacom(table)));
     }
-    let descriptor = described(identity, bytes)?;
-    let layout = Layout::of(&descriptor).ok_or_else(|| {
-        let what = if lies_anywhere(&descriptor, is_pen) { "is a pen whose reports do not say where it is".to_owned() } else { format!("is {}, no {}", describe(&descriptor), Kind::Pen.word()) };
-        UserError::failure(format!("{identity} {what}")).help(
-            "choose another device by `address`; if it is a tablet, its reports are in a format of its \
-             maker's own, which the kernel may know: take `driver = \"evdev\"`; or record it with \
-             `maulstick node hid --record` and send us that",
-        )
-    })?;
-    Ok(Means::Pen(Decoder::Described(layout)))
+    let descriptor = descriptor::read(bytes)?;
+    match Layout::of(&descriptor) {
+        Some(layout) => Ok(Means::Pen(Decoder::Described(layout))),
+        None if lies_anywhere(&descriptor, is_pen) => Err(Unfit::NoPlace),
+        None => Err(Unfit::NoPen(outermost(&descriptor))),
+    }
 }
 
 /// A 6-DOF mouse.
-fn space_mouse(identity: &Identity, bytes: &[u8]) -> Result<Means, UserError> {
-    let descriptor = described(identity, bytes)?;
-    let what = match lies_anywhere(&descriptor, has_six_axes) {
-        true if VENDORS.contains(&identity.vendor) => return Ok(Means::SpaceMouse),
-        true => "is a 6-DOF mouse of an unknown maker".to_owned(),
-        false => {
-            let word = Kind::SpaceMouse.word();
-            format!("is {}, no {word}", describe(&descriptor))
-        }
-    };
-    Err(UserError::failure(format!("{identity} {what}")).help(OTHER))
-}
-
-fn described(identity: &Identity, bytes: &[u8]) -> Result<hidreport::ReportDescriptor, UserError> {
-    descriptor::read(bytes).map_err(|what| {
-        UserError::failure(format!("{identity} describes itself wrongly: {what}")).help(format!(
-            "{OTHER}; the kernel may read a pen all the same: take `driver = \"evdev\"`"
-        ))
-    })
+fn space_mouse(identity: &Identity, bytes: &[u8]) -> Result<Means, Unfit> {
+    let descriptor = descriptor::read(bytes)?;
+    if !lies_anywhere(&descriptor, has_six_axes) {
+        Err(Unfit::NoMouse(outermost(&descriptor)))
+    } else if VENDORS.contains(&identity.vendor) {
+        Ok(Means::SpaceMouse)
+    } else {
+        Err(Unfit::UnknownMaker)
+    }
 }
 
 /// The pen of an event device.
-fn event_pen(identity: &Identity, bytes: &[u8]) -> Result<Means, UserError> {
-    let fault = |what: &str| {
-        UserError::failure(format!("{identity} {what}")).help(
-            "choose another device by `address` in rig.toml: `maulstick device list` lists those with a pen",
-        )
-    };
-    let capabilities = Capabilities::from_bytes(bytes)
-        .ok_or_else(|| fault("is no event device: its driver is `pen`"))?;
-    let pen = EvdevPen::of(&capabilities).ok_or_else(|| {
-        fault("has no pen with X and Y axes of more than one value, as its events go")
-    })?;
+fn event_pen(bytes: &[u8]) -> Result<Means, Unfit> {
+    let capabilities = Capabilities::from_bytes(bytes).ok_or(Unfit::NoEvents)?;
+    let pen = EvdevPen::of(&capabilities).ok_or(Unfit::NoAxes)?;
     Ok(Means::Pen(Decoder::Events(Box::new(pen))))
 }
 
@@ -307,7 +287,7 @@ pub fn open(ports: &mut dyn Ports, kind: Kind, address: &Address) -> Result<Open
     for found in found {
         let opened = ports.open(found).map(|source| {
             let identity = found.identity.clone();
-            let means = means(kind, &identity, source.descriptor());
+            let means = means(kind, &identity, source.descriptor()).map_err(UserError::from);
             Opened {
                 source,
                 identity,
@@ -353,7 +333,9 @@ fn begin(kind: Kind, opened: &mut Opened) {
     }
 }
 
-fn missing(kind: Kind, address: &Address, all: &[Found]) -> UserError {
+/// The error that no device suits, among these.
+#[must_use]
+pub fn missing(kind: Kind, address: &Address, all: &[Found]) -> UserError {
     let mut there: Vec<_> = all.iter().map(|found| found.identity.to_string()).collect();
     there.dedup();
     let what = match address {

@@ -351,8 +351,9 @@ fn another_brush_is_taken_up_and_a_bad_file_leaves_the_one_in_hand() {
     let negative = text.replace("length_mm = 26.0", "length_mm = -26.0");
     let said = tell_brush(&mut live, 2, define(negative)).expect("refused");
     assert!(said.contains("head.length_mm"), "{said}");
-    let said = tell_brush(&mut live, 3, Command::from(Undo { brush: None })).expect("refused");
-    assert!(said.contains("does not carry out"), "{said}");
+    let undo = Command::from(Undo { brush: None });
+    let refused = undo.misaddressed();
+    assert_eq!(live.ask("main", 3, undo), refused);
     let mut mouse = live.device("mouse", 5);
     let load = Command::from(Load {
         mixture: loads()[0].clone(),

@@ -59,6 +59,21 @@ pub fn parse_cell_mm(text: &str) -> Result<f64, CellError> {
     }
 }
 
+/// A text that is no side of a cell.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CellError {
+    /// No number.
+    #[error("'{0}' is not a number of mm such as {PICTURE_CELL_MM}")]
+    NoNumber(String),
+    /// Out of range.
+    #[error(
+        "cells of {0} mm; choose {least} to {most} mm, such as {PICTURE_CELL_MM}",
+        least = CELLS_MM.start(),
+        most = CELLS_MM.end()
+    )]
+    Range(String),
+}
+
 /// The settings of a picture for which no rig is given.
 #[must_use]
 pub fn picture_settings() -> RigConfig {

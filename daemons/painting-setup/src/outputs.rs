@@ -190,6 +190,39 @@ impl Relayed {
     }
 }
 
+/// An output that may not have its name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Clash {
+    /// It is this input.
+    Input(UsedFile, UsedFile),
+    /// It is this other output.
+    Output(UsedFile, UsedFile),
+    /// It is a file that SQLite may keep beside a painting.
+    Companion(UsedFile),
+}
+
+impl From<Clash> for UserError {
+    fn from(clash: Clash) -> Self {
+        let (output, what) = match clash {
+            Clash::Input(output, input) => {
+                let what = format!("{} would take the place of {}", output.what, input.what);
+                (output, what)
+            }
+            Clash::Output(output, other) => {
+                let what = format!("{} and {} would be one file", other.what, output.what);
+                (output, what)
+            }
+            Clash::Companion(output) => {
+                let what = "a file with this extension may belong to a painting";
+                (output, what.to_owned())
+            }
+        };
+        Self::usage(what)
+            .at(output.path.display().to_string())
+            .help(format!("give {} another name", output.what))
+    }
+}
+
 /// Sees that no output is an input or another output, wherever links lead.
 ///
 /// # Errors

@@ -131,7 +131,7 @@ pub fn illuminant(name: &str) -> Result<Illuminant, UserError> {
     let text = read_table(path, MOST_BYTES)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     Illuminant::parse(&stem, &text).map_err(|error| {
-        UserError::usage(error.what)
+        UserError::usage(error.fault.to_string())
             .at(format!("{name}:{}", error.line))
             .help("a row a wavelength: nm,power, rising")
     })

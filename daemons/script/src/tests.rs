@@ -89,7 +89,7 @@ fn says(fault: Result<Script, UserError>, words: &[&str]) {
 }
 
 #[test]
-fn what_is_wrong_has_its_line_the_nearest_name_and_help() {
+fn a_fault_has_its_line_the_nearest_name_and_help() {
     for (steps, words) in [
         (
             "{ load = \"Bone Black\" },\n{ dri = 1.0 },",
@@ -294,7 +294,7 @@ fn the_size_of_a_canvas_is_read_or_told() {
 }
 
 #[test]
-fn another_kind_of_value_is_told_with_key_and_line() {
+fn wrong_types() {
     for (steps, words) in [
         (
             "{ dry = \"all\" }",

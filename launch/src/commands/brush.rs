@@ -235,8 +235,8 @@ fn read_spine(path: &Path) -> Result<SpineFile, UserError> {
 fn read_poses(path: &Path) -> Result<Vec<TrialPose>, UserError> {
     let text = read_table(path, MOST_BYTES)?;
     poses(&text).map_err(|error| {
-        UserError::usage(error.what)
+        UserError::usage(error.to_string())
             .at(format!("{}:{}", path.display(), error.line))
-            .help(error.help)
+            .help(error.help())
     })
 }

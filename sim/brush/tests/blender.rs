@@ -118,6 +118,14 @@ fn a_model_is_the_brush_that_was_drawn() {
     assert_eq!(follows([1.0, 0.0, -24.0]), 2);
 }
 
+/// Segments and vertices of a brush, mm.
+fn numbers(brush: &BrushFile) -> Vec<f64> {
+    let chains = brush.spines.chains.iter();
+    let segments = chains.flat_map(|chain| chain.segments_mm.as_flattened());
+    let vertices = surface(brush).vertices_mm.as_flattened();
+    segments.chain(vertices).copied().collect()
+}
+
 #[test]
 #[ignore = "needs Blender's Python package: ./test --long"]
 fn the_add_on_and_the_loader_agree_on_what_is_a_brush() {
@@ -168,12 +176,6 @@ fn the_add_on_and_the_loader_agree_on_what_is_a_brush() {
     for name in good {
         assert_eq!(found[name], Vec::<String>::new(), "{name}");
         let brush = read(&folder.join(format!("{name}.glb"))).expect(name);
-        let numbers = |brush: &BrushFile| -> Vec<f64> {
-            let chains = brush.spines.chains.iter();
-            let segments = chains.flat_map(|chain| chain.segments_mm.as_flattened());
-            let vertices = surface(brush).vertices_mm.as_flattened();
-            segments.chain(vertices).copied().collect()
-        };
         assert!(
             apart(&numbers(&brush), &numbers(&reference)) < 1e-3,
             "{name}"

@@ -55,6 +55,16 @@ pub enum DocumentError {
     /// Rows or bytes that are not intact.
     #[error("the painting is damaged: {0}")]
     Damaged(String),
+    /// Fewer rows than were written, or more.
+    #[error("the painting is damaged: {found} of its {written} {rows} are there")]
+    Rows {
+        /// Their kind.
+        rows: RowKind,
+        /// Those that are there.
+        found: u64,
+        /// Those that were written.
+        written: u64,
+    },
     /// The latest strokes could not be written.
     #[error("the latest strokes are not in the file: {0}")]
     Unwritten(String),
@@ -72,6 +82,27 @@ pub enum DocumentError {
     Other(String),
 }
 
+/// Kind of counted rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowKind {
+    /// Tiles.
+    Tiles,
+    /// Steps of the history.
+    Steps,
+    /// Named versions.
+    Versions,
+}
+
+impl std::fmt::Display for RowKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Tiles => "tiles",
+            Self::Steps => "steps of its history",
+            Self::Versions => "versions",
+        })
+    }
+}
+
 impl DocumentError {
     /// Advice.
     #[must_use]
@@ -79,7 +110,7 @@ impl DocumentError {
         let words = match self {
             Self::NoPainting => return Advice::NamePainting,
             Self::Missing => return Advice::BeginPainting,
-            Self::Damaged(_) | Self::Altered(_) => return Advice::Recover,
+            Self::Damaged(_) | Self::Rows { .. } | Self::Altered(_) => return Advice::Recover,
             Self::Older(_) => "open it with the Maulstick that made it; nothing was changed",
             Self::Newer { .. } => "open it with that newer Maulstick; nothing was changed",
             Self::InUse { .. } => {
@@ -104,7 +135,10 @@ impl DocumentError {
 
     /// True if it does not speak of the bytes in the file: what cannot be read now may be whole, and be read later.
     pub(crate) fn may_pass(&self) -> bool {
-        !matches!(self, Self::Damaged(_) | Self::Altered(_) | Self::NoPainting)
+        !matches!(
+            self,
+            Self::Damaged(_) | Self::Rows { .. } | Self::Altered(_) | Self::NoPainting
+        )
     }
 }
 

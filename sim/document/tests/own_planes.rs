@@ -135,11 +135,9 @@ fn closed(document: Document, mut sequencer: Sequencer, since: u64) {
     document.close().expect("closed");
 }
 
-#[test]
-fn they_are_undone_redone_saved_and_reopened_byte_for_byte() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let settings = DocumentSettings::new(&folder.path().join("toy.maul"), Access::Paint);
-    let (document, _) = Document::open(&settings).expect("begun");
+/// A new painting with a loaded brush.
+fn begun(settings: &DocumentSettings) -> (Document, Sequencer) {
+    let (document, _) = Document::open(settings).expect("begun");
     let mut sequencer = studio::sequencer_of("marker", Arc::clone(document.pager()));
     sequencer
         .define_brush("main", studio::brush(48))
@@ -152,6 +150,14 @@ fn they_are_undone_redone_saved_and_reopened_byte_for_byte() {
         brush: BrushName::main(),
     };
     painting.apply(load).expect("loaded");
+    (document, sequencer)
+}
+
+#[test]
+fn they_are_undone_redone_saved_and_reopened_byte_for_byte() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let settings = DocumentSettings::new(&folder.path().join("toy.maul"), Access::Paint);
+    let (document, mut sequencer) = begun(&settings);
     stroke(&mut sequencer, 1, 7.0);
     let once = own(&mut sequencer);
     stroke(&mut sequencer, 2, 9.0);

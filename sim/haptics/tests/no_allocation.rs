@@ -53,8 +53,8 @@ fn paint() -> Fluid {
     .expect("a force")
 }
 
-#[test]
-fn a_tick_allocates_nothing() {
+/// A law of each kind.
+fn laws() -> [ForceLaw; 5] {
     let knots = [
         [0.0, 0.0, 12.0],
         [0.06, 0.5, 0.3],
@@ -66,7 +66,7 @@ fn a_tick_allocates_nothing() {
         force_n,
         slope_n,
     });
-    let laws = [
+    [
         ForceLaw::None,
         ForceLaw::Linear {
             k1_n: 0.8,
@@ -83,9 +83,11 @@ fn a_tick_allocates_nothing() {
         ForceLaw::Rigid {
             stiffness_n_m: 900.0,
         },
-    ];
-    let contacts = laws.map(contact);
-    let guide = Guide::new(&GuideModel {
+    ]
+}
+
+fn guide() -> Guide {
+    Guide::new(&GuideModel {
         device: 0,
         device_epoch: 0,
         points_m: vec![[-0.01, 0.002, 0.0], [0.0, 0.004, 0.0], [0.01, 0.002, 0.0]],
@@ -96,8 +98,12 @@ fn a_tick_allocates_nothing() {
         max_force_n: 0.6,
         time_to_live_ns: 20_000_000,
     })
-    .expect("a guide");
-    let paint = paint();
+    .expect("a guide")
+}
+
+#[test]
+fn a_tick_allocates_nothing() {
+    let (contacts, guide, paint) = (laws().map(contact), guide(), paint());
     let mut servo = Servo::new(Limits::default());
     let mut pressed = 0;
     let mut run = |servo: &mut Servo| {

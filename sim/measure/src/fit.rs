@@ -23,6 +23,7 @@ use crate::notes::paint_called;
 use crate::prior::Prior;
 use crate::residuals::{Residual, residuals};
 use crate::surface::{Surface, internal_ground};
+use crate::warning::Warning;
 use crate::wavelength::{Observation, Unknowns, Wavelength};
 
 /// Noise of a reading that the first pass assumes: a good instrument repeats within it.
@@ -63,7 +64,7 @@ pub struct Fit {
     /// Standard deviation of the readings, as estimated from what the fit leaves.
     pub noise: f64,
     /// Warnings about the paints.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// Refuses readings that leave most of a colour to guessing.
@@ -199,24 +200,25 @@ fn surface(measured: &Measurements, options: &FitOptions) -> Surface {
 }
 
 /// Readings that no paint gives, though noise or a wrong surface may.
-fn strange_readings(measured: &Measurements, surface: &Surface) -> Vec<String> {
+fn strange_readings(measured: &Measurements, surface: &Surface) -> Vec<Warning> {
     let allowance = 5.0 * USUAL_NOISE;
     let (least, most) = (surface.reading(0.0).0 - allowance, 1.0 + 2.0 * allowance);
     let mut warnings = Vec::new();
     for sample in &measured.samples {
         let low = sample.readings.iter().any(|r| *r < least);
         if low {
-            warnings.push(format!(
-                "line {}: '{}' reads less than its surface alone reflects ({}): if gloss stayed out \
-                 of the instrument, say so with --specular-excluded",
-                sample.line, sample.name, surface.gloss
-            ));
+            warnings.push(Warning::Low {
+                line: sample.line,
+                sample: sample.name.clone(),
+                gloss: surface.gloss,
+            });
         }
-        if let Some(high) = sample.readings.iter().copied().find(|r| *r > most) {
-            warnings.push(format!(
-                "line {}: '{}' reads {high:.3}, more than a perfect white: K is taken as almost 0 there",
-                sample.line, sample.name
-            ));
+        if let Some(reading) = sample.readings.iter().copied().find(|r| *r > most) {
+            warnings.push(Warning::High {
+                line: sample.line,
+                sample: sample.name.clone(),
+                reading,
+            });
         }
     }
     warnings

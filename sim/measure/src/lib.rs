@@ -19,6 +19,7 @@
 //! | [`residuals`] | how well they reproduce the samples |
 //! | [`fit`](mod@fit) | the whole |
 //! | [`paint_file`](mod@paint_file) | the result as a file |
+//! | [`warning`] | warnings of a fit |
 //!
 //! The example of `docs/measuring.md`: 24 readings of five paints give K and S at each wavelength.
 //!
@@ -44,6 +45,7 @@ mod input;
 pub mod paint_file;
 mod solving;
 pub mod surface;
+pub mod warning;
 
 pub use solving::{
     determined, influence, layer, links, normal, prior, program, residuals, wavelength,
@@ -56,3 +58,4 @@ pub use input::{headings, instrument, measurements, notes, table};
 pub use notes::{SurfaceError, parse_surface};
 pub use paint_file::paint_file;
 pub use residuals::Residual;
+pub use warning::Warning;

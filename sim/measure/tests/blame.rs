@@ -2,7 +2,7 @@
 
 mod support;
 
-use maulstick_measure::{FitOptions, fit};
+use maulstick_measure::{FitOptions, Warning, fit};
 use support::{Bench, Noise};
 
 const ELEVEN: [&str; 11] = [
@@ -56,22 +56,12 @@ fn table(seed: u64) -> (Bench, Vec<Vec<f64>>) {
 /// Samples that the fit blames, in its order.
 fn blamed(bench: &Bench, readings: &[Vec<f64>]) -> Vec<usize> {
     let found = fit(&bench.table(readings, 4), &FitOptions::default()).expect("fitted");
-    let accusations = found
-        .warnings
-        .iter()
-        .filter(|text| text.contains("check its shares"));
-    accusations
-        .map(|text| {
-            println!("  {text}");
-            let line = text
-                .strip_prefix("line ")
-                .and_then(|text| text.split(':').next());
-            // Behind the headings.
-            line.and_then(|line| line.parse::<usize>().ok())
-                .expect("a line")
-                - 2
-        })
-        .collect()
+    let accusations = found.warnings.iter().filter_map(|warning| match warning {
+        // Behind the headings.
+        Warning::Suspect { line, .. } => Some(line - 2),
+        _ => None,
+    });
+    accusations.collect()
 }
 
 /// Writes one share of a mixture too large, the others as much too small together, where that shows: a

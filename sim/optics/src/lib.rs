@@ -79,7 +79,7 @@ pub use mixing::{comparison, km, matching, mixture, paints, search, surface, thi
 pub use mixture::{Blend, Coat, Layer};
 pub use paints::{Paint, PaintError, PaintLibrary, THINNER};
 pub use rule::SamplingRule;
-pub use spectra::{cie, quadrature, rule, spectrum, spectrum_file, upsampling};
+pub use spectra::{cie, quadrature, rule, spectrum, spectrum_error, spectrum_file, upsampling};
 pub use spectrum::Spectrum;
 pub use spectrum_file::Reflectance;
 pub use studio::{FilmPlanes, RuleKind, Studio, StudioSettings, Under};

@@ -71,20 +71,33 @@ fn session(synchronous: &str) -> Session {
     session
 }
 
+/// A fault of an image.
+#[derive(Debug, PartialEq)]
+enum Wrong {
+    /// SQLite finds the database damaged.
+    Database(String),
+    /// This row has another content.
+    Row(i64),
+    /// Other rows are there than were committed.
+    Commits { found: usize, due: usize },
+    /// A scan finds fewer rows than there are.
+    Scan(usize, usize),
+}
+
 impl Session {
     /// What is wrong with an image of the files at `point`: SQLite must open it, find it whole, and
     /// find in it the rows of all transactions committed by then, and of none that was begun later
     /// or only in part. A scan must find the same rows.
-    fn check(&self, image: &Image, point: usize) -> Result<(), String> {
+    fn check(&self, image: &Image, point: usize) -> Result<(), Wrong> {
         let dir = tempfile::tempdir().expect("a directory");
         image.write_to(dir.path(), "b.maul");
-        let failed = |error: rusqlite::Error| error.to_string();
+        let failed = |error: rusqlite::Error| Wrong::Database(error.to_string());
         let db = Connection::open(dir.path().join("b.maul")).map_err(failed)?;
         let whole: String = db
             .query_row("PRAGMA integrity_check(1)", [], |row| row.get(0))
             .map_err(failed)?;
         if whole != "ok" {
-            return Err(whole);
+            return Err(Wrong::Database(whole));
         }
         let rows = if db.table_exists(None, "numbered").map_err(failed)? {
             let mut rows = db
@@ -101,12 +114,13 @@ impl Session {
         if let Some((row, _)) = rows.iter().zip(0..).find_map(|((row, bytes), number)| {
             (*row != number || *bytes != body(number)).then_some((row, number))
         }) {
-            return Err(format!("row {row} is another"));
+            return Err(Wrong::Row(*row));
         }
         let due = self.returned.iter().filter(|at| **at <= point).count() * ROWS as usize;
         let most = self.called.iter().filter(|at| **at < point).count() * ROWS as usize;
         if !(due..=most.max(due)).contains(&rows.len()) || rows.len() % ROWS as usize != 0 {
-            return Err(format!("{} rows, {due} were committed", rows.len()));
+            let found = rows.len();
+            return Err(Wrong::Commits { found, due });
         }
         let wal = image.wal.as_deref().map(Cursor::new);
         let mut scan = Scan::new(Cursor::new(image.main.as_slice()), wal).expect("memory");
@@ -117,13 +131,13 @@ impl Session {
             .map(|row| row.rowid)
             .collect();
         if !rows.iter().all(|(row, _)| scanned.contains(row)) {
-            return Err(format!("{} of {} rows scanned", scanned.len(), rows.len()));
+            return Err(Wrong::Scan(scanned.len(), rows.len()));
         }
         Ok(())
     }
 
     /// What was wrong after power cuts at 100 points.
-    fn cut_at_random(&self, seed: u64) -> Vec<(usize, String)> {
+    fn cut_at_random(&self, seed: u64) -> Vec<(usize, Wrong)> {
         let mut random = Pcg32::new(seed, 2);
         let mut wrong = Vec::new();
         for _ in 0..100 {
@@ -167,7 +181,7 @@ fn commits_that_are_not_synced_are_found_out() {
     assert!(wrong.len() > 50, "{wrong:?}");
     let lost = wrong
         .iter()
-        .filter(|(_, error)| error.contains("were committed"));
+        .filter(|(_, wrong)| matches!(wrong, Wrong::Commits { .. }));
     assert!(lost.count() > 0, "{wrong:?}");
 }
 
@@ -180,7 +194,7 @@ fn commits_that_are_only_ordered_are_found_out() {
     assert!(
         wrong
             .iter()
-            .all(|(_, error)| error.contains("were committed")),
+            .all(|(_, wrong)| matches!(wrong, Wrong::Commits { .. })),
         "{wrong:?}"
     );
 }

@@ -153,9 +153,9 @@ impl Painted {
     }
 
     /// What is wrong with what was recovered from these bytes.
-    fn check(&self, damaged: &Rows, new: &Path, salvage: &SalvageReport) -> Result<(), String> {
+    fn check(&self, damaged: &Rows, new: &Path, salvage: &SalvageReport) -> Result<(), Wrong> {
         let settings = DocumentSettings::new(new, Access::Paint);
-        let mut easel = Easel::open(&settings)?;
+        let mut easel = Easel::open(&settings).map_err(Wrong::Unreadable)?;
         print(&mut easel.sequencer);
         let found = tiles(&mut easel.sequencer);
         let none = Vec::new();
@@ -166,19 +166,19 @@ impl Painted {
                 continue;
             }
             if self.is_untouched(*place, damaged) {
-                return Err(format!("{place:?} was whole and is another"));
+                return Err(Wrong::Changed(*place));
             }
             let is_thin = salvage.thinned.contains(place);
             let seen = self.seen.get(place);
             if !(is.is_empty() || is_thin || seen.is_some_and(|seen| seen.contains(is))) {
-                return Err(format!("{place:?} never was so"));
+                return Err(Wrong::Invented(*place));
             }
             let mut named = salvage.older.iter().chain(&salvage.missing);
             let key = Key::Number(6, place_number(*place));
             let row = self.rows.0.get(&key).and_then(|rows| rows.first());
             let has_row = row.is_some_and(|row| damaged.has(&key, row));
             if has_row && !is_thin && !named.any(|other| other == place) {
-                return Err(format!("{place:?} is another and not named"));
+                return Err(Wrong::Unnamed(*place));
             }
         }
         // It can be painted on, and undone.
@@ -191,11 +191,11 @@ impl Painted {
         easel.undo_all();
         print(&mut easel.sequencer);
         easel.close();
-        Easel::open(&settings).map(drop)
+        Easel::open(&settings).map(drop).map_err(Wrong::Unreadable)
     }
 
     /// What is wrong with what comes of these bytes.
-    fn try_with(&self, bytes: &[u8]) -> Result<Option<SalvageReport>, String> {
+    fn try_with(&self, bytes: &[u8]) -> Result<Option<SalvageReport>, Wrong> {
         let damaged = Rows::of(bytes);
         let has_state = ["painting", "painting copy"].iter().any(|key| {
             let state = Key::Text(1, (*key).to_owned());
@@ -211,9 +211,22 @@ impl Painted {
             {
                 Ok(None)
             }
-            Err(error) => Err(error.to_string()),
+            Err(error) => Err(Wrong::Unreadable(error.to_string())),
         }
     }
+}
+
+/// A fault of what was recovered.
+#[derive(Debug, PartialEq)]
+enum Wrong {
+    /// It cannot be opened.
+    Unreadable(String),
+    /// A tile was whole and is another.
+    Changed(TilePlace),
+    /// A tile never was so.
+    Invented(TilePlace),
+    /// A tile is another and not named.
+    Unnamed(TilePlace),
 }
 
 /// Hurts a file somewhere.
@@ -339,7 +352,7 @@ fn any_page_of_the_file_may_go() {
         bytes[page * PAGE..(page + 1) * PAGE].fill(0);
         let tried = painted
             .try_with(&bytes)
-            .unwrap_or_else(|error| panic!("page {page}: {error}"));
+            .unwrap_or_else(|error| panic!("page {page}: {error:?}"));
         damaged += usize::from(tried.is_none_or(|salvage| !salvage.is_whole()));
     }
     assert!(damaged > 0);
@@ -373,7 +386,7 @@ fn paint_that_never_was_is_seen() {
     assert!(
         wrong
             .as_ref()
-            .is_err_and(|what| what.contains("is another")),
+            .is_err_and(|wrong| matches!(wrong, Wrong::Changed(_) | Wrong::Unnamed(_))),
         "{wrong:?}"
     );
 }

@@ -2,6 +2,7 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_brush::file::library::LIBRARY;
+use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::tile::TileId;
 use maulstick_optics::PaintLibrary;
@@ -297,9 +298,7 @@ fn wells_beside_the_palette_or_of_unknown_paint_are_refused() {
     let unknown = wells_of(&[Mixture::pure("Colbat Blue")], cells, cell_m);
     let error = hand.lay(unknown).expect_err("unknown");
     assert!(
-        error.to_string().contains("'Cobalt Blue'"),
-        "{}",
-        error.to_string()
+        matches!(error, EditError::NoPaint { nearest: Some(near), .. } if near == "Cobalt Blue")
     );
     let mut beside = wells_of(&[Mixture::pure("Cobalt Blue")], cells, cell_m);
     beside[0].center_m[0] = -1e-3;

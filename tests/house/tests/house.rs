@@ -106,7 +106,9 @@ rules! {
         ("ui/kit/src/language/a.rs", "fn f() { assert!(a.contains(\"two words\")); }"),
         ("sim/a.rs", "#[cfg(test)] mod tests { fn f() { assert!(a.is_err_and(|b| b.contains(\"two words\"))); } }"),
         ("sim/b.rs", "fn f() { assert!(a.contains(\"word\") && b); a.contains(\"two words\"); }"),
-    ] => "sim/a.rs";
+        ("sim/c.rs", "fn f() { assert!(a.contains(\"'Cobalt Blue'\")); }"),
+        ("sim/d.rs", "fn f() { assert!(a.starts_with(\"Two words\")); }"),
+    ] => "sim/a.rs + sim/d.rs";
     "text-errors" [
         ("ui/src/main.rs", "fn f() -> Result<(), String> {}"),
         ("ui/src/a.rs", "fn f() -> Result<(), String> {} fn g() -> Result<String, A> {}"),

@@ -93,7 +93,7 @@ fn as_json(fit: &Fit, output: &Path) -> serde_json::Value {
         "mean_delta_e": fit.mean(),
         "worst_delta_e": fit.worst(),
         "noise": fit.noise,
-        "warnings": fit.warnings,
+        "warnings": fit.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
     })
 }
 

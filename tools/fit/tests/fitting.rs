@@ -25,10 +25,8 @@ fn fit_makes_paints_of_the_example_of_its_guide() {
     );
     let library = String::from_utf8(place.bytes("paints.csv")).expect("text");
     let library = maulstick_optics::PaintLibrary::parse(&library).expect("a paint file");
-    assert_eq!(
-        library.find("Pyrrole Red").expect("there").colour_index,
-        "PR254"
-    );
+    let red = library.find("Pyrrole Red").expect("there");
+    assert_eq!(red.colour_index, "PR254");
 
     let json = place
         .done(&["colour", "fit", "m.csv", "-o", "paints.csv", "--json"])

@@ -44,14 +44,27 @@ fn samples(place: &Place, take: &str) -> usize {
     Take::read(&place.path(take)).expect("a take").samples.len()
 }
 
-#[test]
-fn a_take_is_cut_joined_placed_mirrored_and_retimed() {
-    let place = Place::new();
+/// A take, and its first two strokes as another one.
+fn cut(place: &Place) {
     place.short_demo("hand.mcap", 10.0);
+    place.done(&[
+        "take",
+        "cut",
+        "hand.mcap",
+        "--strokes",
+        "1-2",
+        "-o",
+        "one.mcap",
+    ]);
+}
+
+#[test]
+fn a_take_is_cut_and_joined() {
+    let place = Place::new();
+    cut(&place);
     let all = listed(&place, "hand.mcap");
     assert!(all.len() >= 4, "{all:?}");
     let motion = |words: &[&str]| place.done(&[&["take"], words].concat());
-    motion(&["cut", "hand.mcap", "--strokes", "1-2", "-o", "one.mcap"]);
     let rest = format!("3-{}", all.len());
     motion(&["cut", "hand.mcap", "--strokes", &rest, "-o", "two.mcap"]);
     let parts = [samples(&place, "one.mcap"), samples(&place, "two.mcap")];
@@ -62,6 +75,13 @@ fn a_take_is_cut_joined_placed_mirrored_and_retimed() {
     for (own, before) in joined.iter().zip(&all) {
         assert_eq!(own["box_mm"], before["box_mm"]);
     }
+}
+
+#[test]
+fn a_take_is_placed_mirrored_and_retimed() {
+    let place = Place::new();
+    cut(&place);
+    let motion = |words: &[&str]| place.done(&[&["take"], words].concat());
     motion(&["scale", "one.mcap", "--by", "0.5", "-o", "small.mcap"]);
     motion(&["scale", "small.mcap", "--by", "2", "-o", "again.mcap"]);
     motion(&["rotate", "one.mcap", "--by", "-90", "-o", "turned.mcap"]);

@@ -6,6 +6,7 @@
 //! sent.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::Path;
 
 use maulstick_rig::UserError;
@@ -28,7 +29,27 @@ pub struct Salvage {
     /// The samples that can be read.
     pub take: Take,
     /// The damage, if any.
-    pub damage: Option<String>,
+    pub damage: Option<Damage>,
+}
+
+/// Damage of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Damage {
+    /// The first, with its place.
+    pub first: String,
+    /// Number of other places.
+    pub more: usize,
+}
+
+impl fmt::Display for Damage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.first)?;
+        match self.more {
+            0 => Ok(()),
+            1 => f.write_str(", and in another place"),
+            more => write!(f, ", and in {more} other places"),
+        }
+    }
 }
 
 /// Reads as much of a take as can be read.
@@ -88,7 +109,7 @@ impl Take {
 #[derive(Debug, PartialEq)]
 pub(crate) enum Refusal {
     Foreign,
-    Damaged(String),
+    Damaged(Damage),
     Empty,
     Several(String, String),
 }
@@ -158,15 +179,17 @@ struct Reading {
     topics: BTreeMap<u16, String>,
     devices: Vec<(String, Vec<Numbered>)>,
     last_ns: u64,
-    /// The first damage, and how many more places there are.
-    damage: Option<(String, usize)>,
+    damage: Option<Damage>,
 }
 
 impl Reading {
     fn damaged(&mut self, at: usize, what: &str) {
         match &mut self.damage {
-            Some((_, more)) => *more += 1,
-            none => *none = Some((format!("{what} (byte {at})"), 0)),
+            Some(damage) => damage.more += 1,
+            none => {
+                let first = format!("{what} (byte {at})");
+                *none = Some(Damage { first, more: 0 });
+            }
         }
     }
 
@@ -272,11 +295,7 @@ impl Reading {
     }
 
     fn finish(self, setup: Option<TakeSetup>) -> Result<Salvage, Refusal> {
-        let damage = self.damage.map(|(first, more)| match more {
-            0 => first,
-            1 => format!("{first}, and in another place"),
-            more => format!("{first}, and in {more} other places"),
-        });
+        let damage = self.damage;
         let mut devices = self.devices.into_iter();
         match (devices.next(), devices.next()) {
             (Some((device, samples)), None) => Ok(Salvage {

@@ -5,6 +5,7 @@
 //! order. An empty line, another value in the column `stroke`, and time that begins anew begin another stroke.
 
 mod columns;
+mod note;
 mod strokes;
 
 use std::path::Path;
@@ -17,10 +18,16 @@ use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
 
 use crate::take::{Take, TakeSample};
 use columns::Row;
+pub use note::Note;
 
 /// Median times between samples of a stroke from which a unit of time is guessed, s: pens report 10 to 500
 /// times a second.
 const PEN_PERIODS_S: std::ops::RangeInclusive<f64> = 0.002..=0.1;
+
+/// Steepest tilt that a brush is held at, degrees.
+const STEEPEST_TILT_DEG: f64 = 85.0;
+/// Shortest time between strokes, ns: contacts that are less far apart are one stroke to a brush.
+const PAUSE_NS: f64 = 200e6;
 
 /// Layout of a table on the desk.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,8 +107,8 @@ impl std::str::FromStr for TimeUnit {
 pub struct Imported {
     /// The take.
     pub take: Take,
-    /// Guesses, and parts of the table that paint nothing: a sentence each.
-    pub notes: Vec<String>,
+    /// Guesses, and parts of the table that paint nothing.
+    pub notes: Vec<Note>,
 }
 
 /// Reads a table as a take of the device `device`.
@@ -156,7 +163,7 @@ fn time_unit(
     rows: &[Row],
     name: &str,
     layout: TableLayout,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Note>,
 ) -> Result<TimeUnit, UserError> {
     let pairs = rows.windows(2).filter(|two| two[0].paints_to(&two[1]));
     let mut steps: Vec<f64> = pairs
@@ -176,10 +183,7 @@ fn time_unit(
     }
     let fits = |unit: &TimeUnit| PEN_PERIODS_S.contains(&seconds(*unit));
     if let (None, Some(unit)) = (given, TimeUnit::ALL.into_iter().find(fits)) {
-        notes.push(format!(
-            "the unit of t is taken to be {}: samples of a stroke are {median} apart (to choose another: --time-unit s)",
-            unit.name()
-        ));
+        notes.push(Note::Unit { unit, median });
         return Ok(unit);
     }
     let apart = seconds(given.unwrap_or(TimeUnit::S));
@@ -212,7 +216,7 @@ fn too_far(row: &Row, rows: &[Row], name: &str, layout: TableLayout) -> UserErro
 }
 
 /// Parts of a table that paint nothing.
-fn unpainted(rows: &[Row], times_ns: &[u64], layout: TableLayout) -> Vec<String> {
+fn unpainted(rows: &[Row], times_ns: &[u64], layout: TableLayout) -> Vec<Note> {
     let mut notes = Vec::new();
     let outside = |row: &&Row| {
         let within = |axis: usize| (0.0..=layout.size[axis]).contains(&row.values[1 + axis]);
@@ -220,26 +224,24 @@ fn unpainted(rows: &[Row], times_ns: &[u64], layout: TableLayout) -> Vec<String>
     };
     let beyond = rows.iter().filter(outside).count();
     if beyond > 0 {
-        let [width, height] = layout.size;
-        notes.push(format!(
-            "{beyond} of {} samples lie outside of {width}x{height} units: give the tablet's area by --size",
-            rows.len()
-        ));
+        notes.push(Note::Outside {
+            beyond,
+            samples: rows.len(),
+            size: layout.size,
+        });
     }
     let touching = |i: &usize| rows[i - 1].paints_to(&rows[*i]);
     let pairs: Vec<usize> = (1..rows.len()).filter(touching).collect();
     if pairs.is_empty() {
-        notes.push("no two samples in a row have pressure, so the take paints nothing".into());
+        notes.push(Note::Unpainted);
     }
     let torn = |i: &&usize| times_ns[**i] - times_ns[**i - 1] > BRIDGED_NS;
     let torn: Vec<usize> = pairs.iter().filter(torn).copied().collect();
     if let Some(first) = torn.first() {
-        notes.push(format!(
-            "line {}: more than {:.1} s have passed since the sample before, as in {} places: nothing is painted between them",
-            rows[*first].line,
-            BRIDGED_NS as f64 * 1e-9,
-            torn.len()
-        ));
+        notes.push(Note::Torn {
+            line: rows[*first].line,
+            places: torn.len(),
+        });
     }
     notes
 }

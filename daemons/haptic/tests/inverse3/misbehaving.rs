@@ -2,11 +2,13 @@
 
 use glam::DVec3;
 use maulstick_haptic::device::driver::{DeviceError, Driver};
+use maulstick_haptic::drivers::inverse3::connect_error::Refusal;
+use maulstick_haptic::drivers::inverse3::message::Hindrance;
 use serde_json::json;
 use tungstenite::Message;
 
 use super::service::{Act, Service, inventory, state, update};
-use super::{fault, opened, reading, run_ticks, wait_for};
+use super::{opened, reading, refusal, run_ticks, wait_for};
 
 /// Error by which a device is lost in the end.
 fn error_of(driver: &mut dyn Driver) -> DeviceError {
@@ -14,25 +16,19 @@ fn error_of(driver: &mut dyn Driver) -> DeviceError {
 }
 
 #[test]
-fn what_is_missing_at_the_start_is_told_with_what_to_do() {
+fn refuses_what_is_no_ready_device() {
     let closed = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
     let port = closed.local_addr().expect("an address");
     drop(closed);
-    let absent = fault(&format!("ws://{port}"));
-    assert!(
-        absent.what.starts_with("no Inverse service answers at"),
-        "{}",
-        absent.what
-    );
-    let help = absent.help.expect("what to do");
-    assert!(help.contains("systemctl start") && help.contains(":10000"));
+    let absent = refusal(&format!("ws://{port}"));
+    assert!(matches!(absent, Refusal::NoService(_)), "{absent:?}");
 
     let first = |act| {
         let service = Service::start(act, |_| Act::Rest);
-        fault(&service.url)
+        refusal(&service.url)
     };
     let none = first(Act::Say(json!({ "inverse3": [] })));
-    assert!(none.what.ends_with("sees no Inverse3"), "{}", none.what);
+    assert_eq!(none, Refusal::Absent);
     for act in [
         Act::Send(Message::text("hello")),
         Act::Send(Message::binary(vec![0xff; 9])),
@@ -43,32 +39,30 @@ fn what_is_missing_at_the_start_is_told_with_what_to_do() {
         Act::Vanish,
     ] {
         let foreign = first(act);
-        assert!(
-            foreign.what.contains("is no Inverse service"),
-            "{}",
-            foreign.what
-        );
+        assert!(matches!(foreign, Refusal::Foreign(_)), "{foreign:?}");
     }
-    for (part, key, value, what) in [
-        ("status", "calibrated", json!(false), "is not calibrated"),
-        ("status", "power_supply", json!(false), "has no power"),
-        ("status", "in_use", json!(true), "in use by another program"),
+    let id = || "049D".to_owned();
+    let hindered = |hindrance| Refusal::Hindered(id(), hindrance);
+    let axes = json!({ "permutation": "XYX" });
+    for (part, key, value, refusal) in [
         (
-            "config",
-            "basis",
-            json!({ "permutation": "XYX" }),
-            "axes that cannot be read",
+            "status",
+            "calibrated",
+            json!(false),
+            hindered(Hindrance::NotCalibrated),
         ),
+        (
+            "status",
+            "power_supply",
+            json!(false),
+            hindered(Hindrance::NoPower),
+        ),
+        ("status", "in_use", json!(true), Refusal::InUse(id())),
+        ("config", "basis", axes, hindered(Hindrance::UnknownAxes)),
     ] {
         let mut message = inventory();
         message["inverse3"][0][part][key] = value;
-        let hindered = first(Act::Say(message));
-        assert!(
-            hindered.what.contains(what) && hindered.what.contains("049D"),
-            "{}",
-            hindered.what
-        );
-        assert!(hindered.help.is_some());
+        assert_eq!(first(Act::Say(message)), refusal);
     }
 }
 
@@ -80,12 +74,8 @@ fn a_listener_that_is_no_websocket_is_told_as_that() {
         let (mut stream, _) = listener.accept().expect("a client");
         std::io::Write::write_all(&mut stream, b"SSH-2.0-OpenSSH_9\r\n\r\n").ok();
     });
-    let foreign = fault(&url);
-    assert!(
-        foreign.what.contains("is no Inverse service"),
-        "{}",
-        foreign.what
-    );
+    let foreign = refusal(&url);
+    assert!(matches!(foreign, Refusal::Foreign(_)), "{foreign:?}");
     thread.join().expect("it ends");
 }
 

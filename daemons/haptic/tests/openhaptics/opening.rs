@@ -1,5 +1,7 @@
 //! Opening: names, what a device can do, libraries that are none.
 
+use maulstick_haptic::drivers::openhaptics::already_open;
+use maulstick_haptic::drivers::openhaptics::library::HD;
 use maulstick_haptics::Limits;
 use maulstick_libhd::{Call, Script};
 use maulstick_types::stylus::axes;
@@ -197,7 +199,7 @@ fn a_device_without_force_is_none() {
 fn a_process_has_one_device_at_a_time() {
     let _control = play(&Script::default());
     let opened = open(&section()).expect("opened");
-    assert!(refusal(&section()).what.contains("already has a device"));
+    assert_eq!(refusal(&section()), already_open());
     drop(opened);
     assert!(open(&section()).is_ok());
 }
@@ -244,5 +246,8 @@ fn what_is_no_library_of_openhaptics_is_told_apart() {
     let mut anywhere = section();
     anywhere.library = None;
     let fault = refusal(&anywhere);
-    assert!(fault.what.contains("not installed"), "{fault}");
+    assert_eq!(
+        (fault.place, fault.help.as_deref()),
+        (None, Some(HD.install))
+    );
 }

@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use maulstick_haptic::device::driver::{DeviceError, Driver, Reading, Wrench};
-use maulstick_haptic::drivers::polhem;
+use maulstick_haptic::drivers::polhem::handshake::HandshakeError;
+use maulstick_haptic::drivers::polhem::{self, port};
 use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 use serialport::{SerialPort, TTYPort};
@@ -234,45 +235,39 @@ fn fault(path: &str) -> UserError {
 #[test]
 fn each_port_that_cannot_be_opened_says_why() {
     let missing = fault("/dev/ttyACM987");
-    assert_eq!(missing.what, "there is no /dev/ttyACM987");
+    let refused = |path: &str, kind| {
+        let error = serialport::Error::new(kind, "");
+        port::refused(path, &error)
+    };
+    let absent = serialport::ErrorKind::Io(ErrorKind::NotFound);
+    assert_eq!(missing, refused("/dev/ttyACM987", absent));
     let folder = std::env::temp_dir().display().to_string();
     for path in ["/dev/null", &folder] {
-        let no_port = fault(path);
-        assert!(
-            no_port
-                .what
-                .starts_with(&format!("{path} is no serial port")),
-            "{}",
-            no_port.what
-        );
+        let no_port = refused(path, serialport::ErrorKind::Unknown);
+        assert_eq!(fault(path).help, no_port.help);
     }
     let plugged = Plugged::new(Firmware::new(Style::Double, Reads::Lines), 64);
     let driver = opened(&plugged.path);
     let busy = fault(&plugged.path);
-    assert!(busy.what.ends_with("is in use by another program"));
+    let in_use = serialport::ErrorKind::NoDevice;
+    assert_eq!(busy, refused(&plugged.path, in_use));
     drop(driver);
-    for told in [missing, busy] {
-        assert!(told.help.is_some());
-    }
     drop(opened(&plugged.path));
 }
 
 #[test]
-fn what_answers_as_no_stylus_does_is_told_with_what_it_says() {
+fn refuses_what_is_no_stylus() {
     let mut firmware = Firmware::new(Style::Double, Reads::NoForces);
     let plugged = Plugged::new(firmware.clone(), 64);
-    let no_poses = fault(&plugged.path);
-    assert!(no_poses.what.ends_with("tells encoders, but no poses"));
+    let refused = |plugged: &Plugged, error| {
+        let refused = polhem::refused(&plugged.path, error);
+        assert_eq!(fault(&plugged.path), refused);
+    };
+    refused(&plugged, HandshakeError::NoPoses);
     firmware.reads = Reads::Nothing;
     let plugged = Plugged::new(firmware.clone(), 64);
-    let silent = fault(&plugged.path);
-    assert!(
-        silent.what.starts_with("nothing answers at"),
-        "{}",
-        silent.what
-    );
+    refused(&plugged, HandshakeError::Silent);
     firmware.reads = Reads::Modem;
     let plugged = Plugged::new(firmware, 64);
-    let modem = fault(&plugged.path);
-    assert!(modem.what.contains("it says \"ERROR\""), "{}", modem.what);
+    refused(&plugged, HandshakeError::Foreign("ERROR".to_owned()));
 }

@@ -47,11 +47,12 @@ pub mod page {
 /// [`DescriptorError`].
 pub fn read(bytes: &[u8]) -> Result<ReportDescriptor, DescriptorError> {
     let needed = needed(bytes)?;
-    Ok(ReportDescriptor::try_from(needed.as_slice())?)
+    let read = ReportDescriptor::try_from(needed.as_slice());
+    read.map_err(|error: ParserError| DescriptorError::Parser(error.to_string()))
 }
 
 /// A descriptor that is not read.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DescriptorError {
     /// Of no length that the kernel gives.
     #[error("it has {0} bytes, not 1 to {LONGEST}")]
@@ -67,9 +68,9 @@ pub enum DescriptorError {
     /// No report.
     #[error("it says nothing of a report")]
     Empty,
-    /// Refusal of `hidreport`.
-    #[error(transparent)]
-    Parser(#[from] ParserError),
+    /// What `hidreport` refuses.
+    #[error("{0}")]
+    Parser(String),
 }
 
 /// Fault of an item of a descriptor.
@@ -270,18 +271,31 @@ impl Walk {
     }
 }
 
-/// Description of a device by its descriptor: `a mouse and a keyboard`.
+/// Usages of a device's outermost collections, each once.
 #[must_use]
-pub fn describe(descriptor: &ReportDescriptor) -> String {
-    let mut found: Vec<&str> = Vec::new();
+pub fn outermost(descriptor: &ReportDescriptor) -> Vec<(u16, u16)> {
+    let mut found = Vec::new();
     let reports = descriptor.input_reports().iter();
     for field in reports.flat_map(|report| report.fields().iter()) {
         let outermost = field.collections().first();
         for usage in outermost.iter().flat_map(|collection| collection.usages()) {
-            let what = word(pair(usage));
-            if !found.contains(&what) {
-                found.push(what);
+            let usage = pair(usage);
+            if !found.contains(&usage) {
+                found.push(usage);
             }
+        }
+    }
+    found
+}
+
+/// Description of a device by its outermost collections: `a mouse and a keyboard`.
+#[must_use]
+pub fn describe(outermost: &[(u16, u16)]) -> String {
+    let mut found: Vec<&str> = Vec::new();
+    for usage in outermost {
+        let what = word(*usage);
+        if !found.contains(&what) {
+            found.push(what);
         }
     }
     match found.split_last() {

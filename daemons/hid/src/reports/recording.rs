@@ -53,7 +53,7 @@ pub fn playable(kind: Kind, recorded: Vec<Recorded>) -> Result<Recorded, UserErr
     for device in recorded {
         match open::means(kind, &device.identity, &device.descriptor) {
             Ok(_) => return Ok(device),
-            Err(fault) => first = first.or(Some(fault)),
+            Err(fault) => first = first.or(Some(UserError::from(fault))),
         }
     }
     Err(first.unwrap_or_else(|| UserError::usage("there is no device in the recording")))

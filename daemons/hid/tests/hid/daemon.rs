@@ -9,6 +9,7 @@ use maulstick_bus::{Bus, Faults, MemoryNet, Qos, Queue, Wake};
 use maulstick_hid::daemon::{Daemon, HidSettings};
 use maulstick_hid::device_source::{Found, HidSource, Ports};
 use maulstick_hid::recording::{Event, Recorded};
+use maulstick_hid::unfit::{Unfit, UnfitDevice};
 use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, DeviceSection};
 use maulstick_types::control::ControlSample;
@@ -388,14 +389,13 @@ fn a_recording_of_something_else_is_refused_at_once() {
     write(&path, &recorded);
     let mut pen = settings("pen");
     pen.replay = Some(path.clone());
-    let fault = Rig::new(&pen, nothing_plugged_in())
-        .err()
-        .expect("refused")
-        .to_string();
-    assert!(
-        fault.contains("a 6-DOF mouse, no pen tablet") && fault.contains("mouse.hid"),
-        "{fault}"
-    );
+    let fault = Rig::new(&pen, nothing_plugged_in()).err().expect("refused");
+    let unfit = UnfitDevice {
+        identity: recorded.identity,
+        why: Unfit::NoPen(vec![(DESKTOP, 0x08)]),
+    };
+    let place = path.display().to_string();
+    assert_eq!(fault, UserError::from(unfit).at(place));
     let mut mouse = settings("spacemouse");
     mouse.replay = Some(path);
     let mut rig = Rig::new(&mouse, nothing_plugged_in()).expect("a daemon");

@@ -29,19 +29,25 @@ fn wait(exporter: &mut Exporter) -> Outcome {
     }
 }
 
-fn whole(folder: &tempfile::TempDir, name: &str) -> WholePath {
-    WholePath::new(folder.path().join(name).display().to_string()).expect("whole")
+/// The outcome of an order, or its refusal at once.
+fn outcome(order: &ExportOrder) -> Outcome {
+    let mut exporter = Exporter::default();
+    let usual = Export::default();
+    match exporter.begin((1, 2), order, painting([96, 64]), &usual, 0) {
+        Ok(()) => wait(&mut exporter),
+        Err(Refusal { what, advice }) => Outcome::Refused { what, advice },
+    }
 }
 
-fn begin(exporter: &mut Exporter, order: &ExportOrder) -> Result<(), Refusal> {
-    exporter.begin((1, 2), order, painting([96, 64]), &Export::default(), 0)
+/// An order to a file in a folder.
+fn order(folder: &Path, name: &str) -> ExportOrder {
+    let path = folder.join(name).display().to_string();
+    ExportOrder::to(WholePath::new(path).expect("whole"))
 }
 
 #[test]
-fn every_format_is_written() {
+fn every_format() {
     let folder = tempfile::tempdir().expect("a folder");
-    let at = |name: &str| whole(&folder, name);
-    let mut exporter = Exporter::default();
     let heads: [(&str, &str, &[u8]); 5] = [
         ("a.png", "", b"\x89PNG"),
         ("a.exr", "", &[0x76, 0x2f, 0x31, 0x01]),
@@ -52,12 +58,11 @@ fn every_format_is_written() {
     for (name, format, head) in heads {
         let order = ExportOrder {
             format: format.to_owned(),
-            ..ExportOrder::to(at(name))
+            ..order(folder.path(), name)
         };
-        begin(&mut exporter, &order).expect("begun");
-        let outcome = wait(&mut exporter);
+        let outcome = outcome(&order);
         assert!(matches!(outcome, Outcome::Done { .. }), "{outcome:?}");
-        let bytes = std::fs::read(at(name).as_str()).expect("written");
+        let bytes = std::fs::read(folder.path().join(name)).expect("written");
         assert!(
             bytes.starts_with(head) || name == "a.stl" && bytes.len() > 84,
             "{name}: {:?}",
@@ -67,44 +72,35 @@ fn every_format_is_written() {
 }
 
 #[test]
-fn an_order_that_cannot_be_carried_out_is_refused() {
+fn refuses_what_is_no_export() {
     let folder = tempfile::tempdir().expect("a folder");
-    let at = |name: &str| whole(&folder, name);
-    let mut exporter = Exporter::default();
-    let refused = |order: ExportOrder, words: [&str; 2]| {
-        let mut exporter = Exporter::default();
-        let said = match begin(&mut exporter, &order) {
-            Err(refusal) => format!("{}; {}", refusal.what, refusal.advice),
-            Ok(()) => match wait(&mut exporter) {
-                Outcome::Refused { what, advice } => format!("{what}; {advice}"),
-                done => unreachable!("{done:?}"),
-            },
-        };
-        assert!(words.iter().all(|word| said.contains(word)), "{said}");
-    };
-    refused(
-        ExportOrder::to(at("a.jpg")),
-        ["'jpg'", ".png, .exr, .ora, .stl or .glb"],
-    );
-    refused(ExportOrder::to(at("no/a.png")), ["no/a.png", "folder"]);
+    let order = |name: &str| order(folder.path(), name);
     let profile = ExportOrder {
         profile: "own.icc".into(),
-        ..ExportOrder::to(at("a.png"))
+        ..order("a.png")
     };
-    refused(profile, ["'own.icc'", "display-p3"]);
     let beside = ExportOrder {
         format: "png".into(),
-        ..ExportOrder::to(at("a.maul-wal"))
+        ..order("a.maul-wal")
     };
-    refused(beside, ["may belong to a painting", "another name"]);
     let step = ExportOrder {
         exaggeration: -1.0,
-        ..ExportOrder::to(at("b.stl"))
+        ..order("b.stl")
     };
-    begin(&mut exporter, &step).expect("seen later");
-    let outcome = wait(&mut exporter);
-    assert!(matches!(outcome, Outcome::Refused { .. }), "{outcome:?}");
-    assert!(!Path::new(at("b.stl").as_str()).exists());
+    for (order, quoted) in [
+        (order("a.jpg"), "'jpg'"),
+        (order("no/a.png"), "no/a.png"),
+        (profile, "'own.icc'"),
+        (beside, ""),
+        (step, "-1"),
+    ] {
+        let Outcome::Refused { what, .. } = outcome(&order) else {
+            panic!("{order:?}");
+        };
+        assert!(what.contains(quoted), "{what}");
+    }
+    let files = std::fs::read_dir(folder.path()).expect("a folder");
+    assert_eq!(files.count(), 0);
 }
 
 #[test]
@@ -126,10 +122,7 @@ fn an_export_that_is_stopped_leaves_what_was_there() {
     assert!(second.expect_err("one at a time").what.contains("a.png"));
     exporter.stop().expect("stopped");
     let outcome = wait(&mut exporter);
-    let Outcome::Refused { what, .. } = outcome else {
-        unreachable!("it was stopped: {outcome:?}");
-    };
-    assert!(what.contains("was stopped"), "{what}");
+    assert!(matches!(outcome, Outcome::Refused { .. }), "{outcome:?}");
     assert_eq!(std::fs::read(&path).expect("there"), BEFORE);
     assert_eq!(exporter.status(9), None);
     let files = std::fs::read_dir(folder.path()).expect("a folder");

@@ -46,7 +46,7 @@ impl GroundFile {
         }
         let text = read_table(path, SPECTRUM_MAX as u64)?;
         let read = Reflectance::parse(&text).map_err(|error| {
-            UserError::usage(error.what)
+            UserError::usage(error.fault.to_string())
                 .at(format!("{name}:{}", error.line))
                 .help("a row a wavelength: nm,reflectance, rising, 0 to 1")
         })?;

@@ -139,6 +139,12 @@ fn program(name: &str, driver: &str, at: &str) -> Row {
     [name, "-", at, driver, "found"].map(str::to_owned)
 }
 
+/// Beginning of the list where nothing is attached beside the devices of the rig.
+const NOTHING_ELSE: &str = "Nothing else is attached that a driver fits.";
+/// Beginning of the list where nothing is attached.
+const NOTHING: &str =
+    "Nothing attached that a driver fits; the mouse paints, and so does `driver = \"simulated\"`.";
+
 /// Message if there is nothing that a driver fits, but what the rig has in use.
 fn nothing(findings: &DeviceListing) -> String {
     let folders: Vec<String> = findings
@@ -148,10 +154,8 @@ fn nothing(findings: &DeviceListing) -> String {
         .map(|path| path.display().to_string())
         .collect();
     let first = match is_used(findings) {
-        true => "Nothing else is attached that a driver fits.",
-        false => {
-            "Nothing attached that a driver fits; the mouse paints, and so does `driver = \"simulated\"`."
-        }
+        true => NOTHING_ELSE,
+        false => NOTHING,
     };
     format!(
         "{first}\n\

@@ -247,7 +247,9 @@ fn recover(from: &Path, output: &Path) -> Result<i32, UserError> {
         "{}: {} samples ({})",
         output.display(),
         salvage.take.samples.len(),
-        salvage.damage.as_deref().unwrap_or(WHOLE)
+        salvage
+            .damage
+            .map_or(WHOLE.to_owned(), |damage| damage.to_string())
     );
     Ok(0)
 }

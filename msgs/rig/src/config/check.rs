@@ -328,7 +328,7 @@ mod tests {
         assert!(error("width_mm = 256", "width_mm = -1").contains("width_mm"));
         assert!(error("cell_mm = 0.25", "cell_mm = 0").contains("cells"));
         assert!(error("size_mm = 10", "size_mm = nan").contains("size_mm"));
-        assert!(error("name = \"studio\"", "name = \"my studio\"").contains("my studio"));
+        assert!(error("name = \"studio\"", "name = \"./studio\"").contains("./studio"));
         assert!(error("width_mm = 256", "width_mm = \"wide\"").contains("rig.toml:10"));
         assert!(error("[rig]", "[rig").contains("rig.toml:5"));
     }

@@ -313,52 +313,118 @@ fn share_at(curve: &[[f64; 2]], place: f64) -> f64 {
 mod tests {
     use super::*;
 
-    #[test]
-    fn bad_files_name_their_field() {
+    /// The error of the round brush with a part of its file replaced.
+    fn error(from: &str, to: &str) -> BrushError {
         let text = BrushFile::library_text("round").expect("text");
-        let error = |from: &str, to: &str| {
-            assert!(text.contains(from), "{from}");
-            BrushFile::parse(&text.replace(from, to))
-                .expect_err(to)
-                .to_string()
-        };
-        assert!(error("friction = 0.25", "frictoin = 0.25").contains("frictoin"));
-        assert!(error("joints = 3", "joints = 0").contains("spines.joints is 0"));
-        assert!(error("joints = 3", "joints = 65").contains("spines.joints is 65"));
-        assert!(error("count = 384", "count = 5000").contains("strips.count is 5000"));
-        assert!(error("length_mm = 25.0", "length_mm = -1.0").contains("head.length_mm is -1"));
-        assert!(error("friction = 0.25", "friction = nan").contains("contact.friction is NaN"));
-        assert!(error("[0.25, 1.0]", "[0.95, 1.0]").contains("rising order"));
-        assert!(error("[[0.0, 0.82]", "[[0.0, 0.0]").contains("share at the ferrule"));
-        assert!(error("friction_static = 0.32", "friction_static = 0.1").contains("static is 0.1"));
-        assert!(error("[1.0, 0.8, ", "[1.0, 0.5, ").contains("force.hermite (force) is 0.5"));
-        assert!(error("[1.0, 0.8, ", "[0.9, 0.8, ").contains("force.hermite (depth) is 0.9"));
-        assert!(error("[0.06, 0.5, ", "[0.06, 0.5, 9").contains("force.hermite (slope) is 9"));
-        assert!(error(", [1.2, 1.5, 6.0]]", "]").contains("force.hermite is 4"));
-        assert!(error("focus = 2.0", "focus = 1.0").contains("contact.focus is 1"));
-        assert!(error("clumping = [0.0,", "clumping = [2.0,").contains("strips.clumping is 2"));
-        let chain = "[[spines.chain]]\nroot_mm = [0, 0, 0]\nsegments_mm = []\n\
-                     stiffness_n_mm = []\ndamping_n_mm = []\n[strips]";
-        assert!(error("[strips]", chain).contains("spines.chain is 1, but must be absent"));
-        let layout = |chain: &str| {
-            let text = text.replace("[spines]", "[spines]\nlayout = \"chains\"");
-            let file = text.replace("[strips]", chain);
-            BrushFile::parse(&file).expect_err(chain).to_string()
-        };
-        assert!(layout("[strips]").contains("1 to 24 chains"));
-        assert!(layout(chain).contains("1 to 64 segments"));
-        let unequal = chain.replace("segments_mm = []", "segments_mm = [[0, 0, -9]]");
-        assert!(layout(&unequal).contains("one for each segment"));
-        let skin = |text: &str| error("[contact]", &format!("[surface]\n{text}\n[contact]"));
-        assert!(skin("levels = 0\nrecede_mm = 0.1").contains("surface.levels is 0"));
+        assert!(text.contains(from), "{from}");
+        BrushFile::parse(&text.replace(from, to)).expect_err(to)
+    }
+
+    /// Field and value of an error.
+    fn range(error: BrushError) -> (String, f64) {
+        match error {
+            BrushError::Range { field, value, .. } => (field, value),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn refuses_unknown_field() {
+        let error = error("friction = 0.25", "frictoin = 0.25");
+        assert!(matches!(error, BrushError::File(text) if text.contains("frictoin")));
+    }
+
+    #[test]
+    fn refuses_out_of_range() {
+        for (from, to, field, value) in [
+            ("joints = 3", "joints = 0", "spines.joints", 0.0),
+            ("joints = 3", "joints = 65", "spines.joints", 65.0),
+            ("count = 384", "count = 5000", "strips.count", 5000.0),
+            (
+                "length_mm = 25.0",
+                "length_mm = -1.0",
+                "head.length_mm",
+                -1.0,
+            ),
+            ("[0.25, 1.0]", "[0.95, 1.0]", "head.profile (place)", 0.5),
+            (
+                "[[0.0, 0.82]",
+                "[[0.0, 0.0]",
+                "head.profile (share at the ferrule)",
+                0.0,
+            ),
+            (
+                "friction_static = 0.32",
+                "friction_static = 0.1",
+                "contact.friction_static",
+                0.1,
+            ),
+            ("[1.0, 0.8, ", "[1.0, 0.5, ", "force.hermite (force)", 0.5),
+            ("[1.0, 0.8, ", "[0.9, 0.8, ", "force.hermite (depth)", 0.9),
+            (
+                "[0.06, 0.5, ",
+                "[0.06, 0.5, 9",
+                "force.hermite (slope)",
+                90.34,
+            ),
+            (", [1.2, 1.5, 6.0]]", "]", "force.hermite", 4.0),
+            ("focus = 2.0", "focus = 1.0", "contact.focus", 1.0),
+            (
+                "clumping = [0.0,",
+                "clumping = [2.0,",
+                "strips.clumping",
+                2.0,
+            ),
+            ("[strips]", CHAIN, "spines.chain", 1.0),
+        ] {
+            assert_eq!(range(error(from, to)), (field.to_owned(), value), "{to}");
+        }
+        let (field, value) = range(error("friction = 0.25", "friction = nan"));
+        assert!(field == "contact.friction" && value.is_nan());
+    }
+
+    const CHAIN: &str = "[[spines.chain]]\nroot_mm = [0, 0, 0]\nsegments_mm = []\n\
+                         stiffness_n_mm = []\ndamping_n_mm = []\n[strips]";
+
+    #[test]
+    fn refuses_bad_chains() {
+        let text = BrushFile::library_text("round").expect("text");
+        let text = text.replace("[spines]", "[spines]\nlayout = \"chains\"");
+        let unequal = CHAIN.replace("segments_mm = []", "segments_mm = [[0, 0, -9]]");
+        for (chain, field) in [
+            ("[strips]", "spines.chain"),
+            (CHAIN, "spines.chain.segments_mm"),
+            (&unequal, "spines.chain.stiffness_n_mm"),
+        ] {
+            let error = BrushFile::parse(&text.replace("[strips]", chain)).expect_err(chain);
+            assert_eq!(range(error), (field.to_owned(), 0.0), "{chain}");
+        }
+    }
+
+    #[test]
+    fn refuses_bad_skins() {
         let one = "levels = 1\nrecede_mm = 0.1\nvertices_mm = [[0, 0, 0]]\n";
-        assert!(skin(&format!("{one}weights = [[[0, 0.5]]]\nfaces = [[0, 0, 0]]")).contains("sum"));
-        assert!(
-            skin(&format!("{one}weights = [[[0, 1]]]\nfaces = [[0, 0, 3]]")).contains("vertex")
-        );
-        assert!(
-            skin(&format!("{one}weights = [[[99, 1]]]\nfaces = [[0, 0, 0]]")).contains("joint")
-        );
+        for (skin, field, value) in [
+            ("levels = 0\nrecede_mm = 0.1", "surface.levels", 0.0),
+            (
+                &format!("{one}weights = [[[0, 0.5]]]\nfaces = [[0, 0, 0]]"),
+                "surface.weights (sum)",
+                0.5,
+            ),
+            (
+                &format!("{one}weights = [[[0, 1]]]\nfaces = [[0, 0, 3]]"),
+                "surface.faces",
+                3.0,
+            ),
+            (
+                &format!("{one}weights = [[[99, 1]]]\nfaces = [[0, 0, 0]]"),
+                "surface.weights (joint)",
+                99.0,
+            ),
+        ] {
+            let error = error("[contact]", &format!("[surface]\n{skin}\n[contact]"));
+            assert_eq!(range(error), (field.to_owned(), value), "{skin}");
+        }
     }
 
     #[test]
@@ -401,11 +467,7 @@ mod tests {
             448
         );
         let too_fine = BrushFile::library("knife").and_then(|file| file.scaled_to(1.0));
-        assert!(
-            too_fine
-                .expect_err("too thin")
-                .to_string()
-                .contains("thickness_mm")
-        );
+        let (field, _) = range(too_fine.expect_err("too thin"));
+        assert_eq!(field, "head.thickness_mm");
     }
 }

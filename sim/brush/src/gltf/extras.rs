@@ -187,8 +187,7 @@ mod tests {
     fn slips_are_told_from_other_peoples_properties() {
         for key in ["stifness", "Stiffness", "damping_share", "length", "strips"] {
             let error = of(Owner::Bone, &format!(r#"{{"{key}": 1}}"#)).expect_err(key);
-            assert!(matches!(error, GltfError::Misspelt { .. }), "{error}");
-            assert!(error.to_string().contains(key));
+            assert!(matches!(error, GltfError::Misspelt { key: found, .. } if found == key));
         }
         for key in [
             "cycles",
@@ -201,7 +200,9 @@ mod tests {
             assert_eq!(none, Ok(Properties::default()), "{key}");
         }
         let elsewhere = of(Owner::Object, r#"{"stiffness": 1}"#).expect_err("a bone's");
-        assert!(elsewhere.to_string().contains("'stiffness' on a bone"));
+        assert!(
+            matches!(elsewhere, GltfError::Misspelt { nearest: "stiffness", place, .. } if !place.is_empty())
+        );
     }
 
     #[test]

@@ -23,6 +23,9 @@ use crate::file::check::{MOST_JOINTS, within};
 use crate::solver::{ContactConstraint, Energy, Settings, Solver};
 use crate::spine::{Spine, SpineShape};
 
+use super::pose_error::LARGEST_VALUE;
+pub use super::pose_error::{PoseError, PoseFault};
+
 /// A number for all joints, or one for each.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(
@@ -75,7 +78,6 @@ fn two() -> f64 {
 
 /// Lengths, stiffness and the like must be of a size that floating point can square.
 const SMALLEST_VALUE: f64 = 1e-12;
-const LARGEST_VALUE: f64 = 1e9;
 
 impl SpineFile {
     /// Reads a spine file.
@@ -195,39 +197,11 @@ pub struct TrialPose {
     pub brush: Rigid,
 }
 
-/// Error in a list of poses.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{what}")]
-pub struct PoseError {
-    /// Line in the text, from 1.
-    pub line: usize,
-    /// The error.
-    pub what: String,
-    /// Advice.
-    pub help: &'static str,
-}
-
 /// The headings of a list of poses.
 pub const HEADER: &str = "t,x,y,z,qx,qy,qz,qw";
 const COLUMNS: [&str; 8] = ["t", "x", "y", "z", "qx", "qy", "qz", "qw"];
 /// A quaternion whose length differs from 1 by more is taken for a mistake.
 const NEARLY_UNIT: f64 = 1e-3;
-
-impl From<TableError> for PoseError {
-    fn from(error: TableError) -> Self {
-        Self {
-            line: error.line,
-            what: error.what(),
-            help: match error.fault {
-                Fault::Narrow { .. } | Fault::Wide { .. } => {
-                    "each line after the headings is a pose: t,x,y,z,qx,qy,qz,qw"
-                }
-                Fault::NotFinite { .. } => "leave out poses that are not known",
-                other => other.help(),
-            },
-        }
-    }
-}
 
 /// Reads a list of poses: a table whose first line names the columns of [`HEADER`] in any order, then a line a pose, time
 /// rising (s, m, unit quaternion).
@@ -236,51 +210,37 @@ impl From<TableError> for PoseError {
 /// A [`PoseError`] with the line.
 pub fn poses(text: &str) -> Result<Vec<TrialPose>, PoseError> {
     let table = Table::parse(text, HeadingLine::First)?;
-    let headless = |what: String| PoseError {
-        line: table.first_line(),
-        what,
-        help: "the first line is: t,x,y,z,qx,qy,qz,qw",
-    };
+    let line = table.first_line();
+    let headless = |fault| PoseError { line, fault };
     if table.headings().is_empty() {
-        return Err(headless("the file is empty".to_owned()));
+        return Err(headless(PoseFault::Empty));
     }
     let found = table.columns(COLUMNS);
-    let found = found.map_err(|error| headless(error.what()))?;
+    let found = found.map_err(|error| headless(PoseFault::Headings(error)))?;
     let mut places = [0; COLUMNS.len()];
     for ((place, found), name) in places.iter_mut().zip(found).zip(COLUMNS) {
-        *place = found.ok_or_else(|| headless(format!("the column '{name}' is missing")))?;
+        *place = found.ok_or_else(|| headless(PoseFault::Missing(name)))?;
     }
     let mut poses: Vec<TrialPose> = Vec::new();
     for row in table.rows() {
         let pose = pose(row, &places)?;
         if let Some(last) = poses.last().filter(|last| last.t >= pose.t) {
-            return Err(PoseError {
-                line: row.line(),
-                what: format!("time does not rise: {} s after {} s", pose.t, last.t),
-                help: "sort the poses by time",
-            });
+            let (line, fault) = (row.line(), PoseFault::Time(pose.t, last.t));
+            return Err(PoseError { line, fault });
         }
         poses.push(pose);
     }
     if poses.is_empty() {
-        return Err(PoseError {
-            line: table.first_line(),
-            what: "there are no poses".to_owned(),
-            help: "each line after the headings is a pose: t,x,y,z,qx,qy,qz,qw",
-        });
+        return Err(headless(PoseFault::NoPoses));
     }
     Ok(poses)
 }
 
 fn pose(row: Row<'_>, places: &[usize; COLUMNS.len()]) -> Result<TrialPose, PoseError> {
-    let wrong = |what: String, help: &'static str| PoseError {
-        line: row.line(),
-        what,
-        help,
-    };
+    let line = row.line();
     let (cells, columns) = (row.len(), COLUMNS.len());
     if cells < columns {
-        return Err(TableError::new(row.line(), Fault::Narrow { cells, columns }).into());
+        return Err(TableError::new(line, Fault::Narrow { cells, columns }).into());
     }
     let mut values = [0.0; COLUMNS.len()];
     for (value, place) in values.iter_mut().zip(places) {
@@ -290,13 +250,13 @@ fn pose(row: Row<'_>, places: &[usize; COLUMNS.len()]) -> Result<TrialPose, Pose
     let rotation = DQuat::from_xyzw(qx, qy, qz, qw);
     let length = rotation.length();
     if (length - 1.0).abs() > NEARLY_UNIT {
-        let what = format!("qx,qy,qz,qw has the length {length}, not 1");
-        return Err(wrong(what, "a rotation is a unit quaternion, w last"));
+        let fault = PoseFault::Length(length);
+        return Err(PoseError { line, fault });
     }
     let far = [x, y, z].into_iter().map(f64::abs).fold(0.0, f64::max);
     if far > LARGEST_VALUE {
-        let what = format!("x,y,z: {far} m is farther than {LARGEST_VALUE} m");
-        return Err(wrong(what, "lengths are in metres"));
+        let fault = PoseFault::Far(far);
+        return Err(PoseError { line, fault });
     }
     Ok(TrialPose {
         t,
@@ -400,31 +360,58 @@ mod tests {
     const SPINE: &str = "lengths_m = [0.01, 0.008]\nstiffness_nm_per_rad = [3e-4, 1e-4]\n";
 
     #[test]
-    fn bad_spines_name_their_field() {
-        let error = |text: &str| {
-            let error = SpineFile::parse(text).expect_err(text);
-            error.to_string()
-        };
-        let with = |more: &str| error(&format!("{SPINE}{more}\n"));
+    fn refuses_bad_fields() {
+        let with = |more: &str| format!("{SPINE}{more}\n");
+        for (text, field) in [
+            (with("mue = 0.2"), "mue"),
+            (with("damping_nm = 'none'"), "damping_nm"),
+            ("lengths_m = [0.01]".to_owned(), "stiffness_nm_per_rad"),
+        ] {
+            let error = SpineFile::parse(&text).expect_err(field);
+            assert!(matches!(error, BrushError::File(text) if text.contains(field)));
+        }
+    }
+
+    /// Field and value of the error in a file.
+    fn range(text: &str) -> (String, f64) {
+        match SpineFile::parse(text).expect_err(text) {
+            BrushError::Range { field, value, .. } => (field, value),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn refuses_out_of_range() {
         assert!(SpineFile::parse(SPINE).is_ok());
-        assert!(with("mue = 0.2").contains("mue"));
-        assert!(with("mu = -0.1").contains("mu is -0.1"));
-        assert!(with("mu = nan").contains("mu is NaN"));
-        assert!(with("mu = 0.4\nmu_static = 0.3").contains("mu_static is 0.3"));
-        assert!(with("c_eta = 1.1").contains("c_eta is 1.1"));
-        assert!(with("k = 1.0").contains("k is 1,"));
-        assert!(with("damping_nm = -1.0").contains("damping_nm is -1"));
-        assert!(with("damping_nm = [0.0, -1.0]").contains("damping_nm[1] is -1"));
-        assert!(with("damping_nm = [0.0]").contains("damping_nm (number) is 1"));
-        assert!(with("damping_nm = 'none'").contains("damping_nm is a number for all joints"));
-        let swap = |from: &str, to: &str| error(&SPINE.replace(from, to));
-        assert!(swap("0.008", "0.0").contains("lengths_m[1] is 0, but must be above 0"));
-        assert!(swap("0.008", "-0.008").contains("lengths_m[1] is -0.008"));
-        assert!(swap("0.008", "inf").contains("lengths_m[1] is inf"));
-        assert!(swap("1e-4", "-1e-4").contains("stiffness_nm_per_rad[1] is -0.0001"));
-        assert!(swap(", 1e-4", "").contains("stiffness_nm_per_rad (number) is 1"));
-        assert!(swap("0.01, 0.008", "").contains("lengths_m (number) is 0"));
-        assert!(error("lengths_m = [0.01]").contains("stiffness_nm_per_rad"));
+        for (more, field, value) in [
+            ("mu = -0.1", "mu", -0.1),
+            ("mu = 0.4\nmu_static = 0.3", "mu_static", 0.3),
+            ("c_eta = 1.1", "c_eta", 1.1),
+            ("k = 1.0", "k", 1.0),
+            ("damping_nm = -1.0", "damping_nm", -1.0),
+            ("damping_nm = [0.0, -1.0]", "damping_nm[1]", -1.0),
+            ("damping_nm = [0.0]", "damping_nm (number)", 1.0),
+        ] {
+            let found = range(&format!("{SPINE}{more}\n"));
+            assert_eq!(found, (field.to_owned(), value), "{more}");
+        }
+        let (field, value) = range(&format!("{SPINE}mu = nan\n"));
+        assert!(field == "mu" && value.is_nan());
+        for (from, to, field, value) in [
+            ("0.008", "0.0", "lengths_m[1]", 0.0),
+            ("0.008", "-0.008", "lengths_m[1]", -0.008),
+            ("0.008", "inf", "lengths_m[1]", f64::INFINITY),
+            ("1e-4", "-1e-4", "stiffness_nm_per_rad[1]", -1e-4),
+            (", 1e-4", "", "stiffness_nm_per_rad (number)", 1.0),
+            ("0.01, 0.008", "", "lengths_m (number)", 0.0),
+        ] {
+            let found = range(&SPINE.replace(from, to));
+            assert_eq!(found, (field.to_owned(), value), "{to}");
+        }
+    }
+
+    #[test]
+    fn most_joints() {
         let many = |n: usize| {
             let list = |value: f64| format!("{:?}", vec![value; n]);
             format!(
@@ -436,41 +423,54 @@ mod tests {
         for n in [1, MOST_JOINTS] {
             assert!(SpineFile::parse(&many(n)).is_ok(), "{n}");
         }
-        assert!(error(&many(65)).contains("lengths_m (number) is 65"));
+        assert_eq!(range(&many(65)), ("lengths_m (number)".to_owned(), 65.0));
     }
 
     #[test]
-    fn bad_poses_name_their_line() {
-        let error = |text: &str| {
-            let error = poses(text).expect_err(text);
-            (error.line, error.what)
+    fn bad_poses_have_their_line() {
+        let error = |text: &str, line: usize, fault: PoseFault| {
+            assert_eq!(poses(text), Err(PoseError { line, fault }), "{text}");
         };
-        let rows = |rows: &str| error(&format!("{HEADER}\n{rows}\n"));
-        let says = |(line, what): (usize, String), at: usize, words: &str| {
-            assert!(line == at && what.contains(words), "{line}: {what}");
+        let row = |rows: &str, line: usize, fault: PoseFault| {
+            error(&format!("{HEADER}\n{rows}\n"), line, fault);
         };
-        assert_eq!(
-            poses(&format!("{HEADER}\n0,0,0,1,0,0,0,1\n\n")).map(|p| p.len()),
-            Ok(1)
-        );
-        says(error(""), 1, "empty");
-        says(error("0,0,0,1,0,0,0,1\n"), 1, "column 1");
-        says(error(HEADER), 1, "no poses");
-        says(rows("0,0,0,1,0,0,0"), 2, "7 columns");
-        says(rows("0,0,0,1,0,0,0,1,2"), 2, "9 columns");
-        says(rows("0,0,0,a,0,0,0,1"), 2, "(z): 'a' is not a number");
-        says(
-            rows("0,0,0,1,0,0,0,1\n1,nan,0,1,0,0,0,1"),
-            3,
-            "(x): 'nan' is not finite",
-        );
-        says(
-            rows("0,0,0,1,0,0,0,1\n0,0,0,1,0,0,0,1"),
-            3,
-            "time does not rise",
-        );
-        says(rows("0,0,0,1,0,0,0,0.9"), 2, "length 0.9");
-        says(rows("0,0,0,1e10,0,0,0,1"), 2, "farther");
+        let one = format!("{HEADER}\n0,0,0,1,0,0,0,1\n\n");
+        assert_eq!(poses(&one).map(|poses| poses.len()), Ok(1));
+        error("", 1, PoseFault::Empty);
+        let headless = poses("0,0,0,1,0,0,0,1\n").expect_err("no headings");
+        assert!(headless.line == 1 && matches!(headless.fault, PoseFault::Headings(_)));
+        error(HEADER, 1, PoseFault::NoPoses);
+        let columns = COLUMNS.len();
+        let narrow = TableError::new(2, Fault::Narrow { cells: 7, columns });
+        row("0,0,0,1,0,0,0", 2, PoseFault::Row(narrow));
+        let wide = TableError {
+            column: Some(9),
+            ..TableError::new(2, Fault::Wide { cells: 9, columns })
+        };
+        row("0,0,0,1,0,0,0,1,2", 2, PoseFault::Row(wide));
+        let same_time = "0,0,0,1,0,0,0,1\n0,0,0,1,0,0,0,1";
+        row(same_time, 3, PoseFault::Time(0.0, 0.0));
+        row("0,0,0,1,0,0,0,0.9", 2, PoseFault::Length(0.9));
+        row("0,0,0,1e10,0,0,0,1", 2, PoseFault::Far(1e10));
+    }
+
+    #[test]
+    fn bad_numbers_have_their_column() {
+        let cell = |rows: &str, line: usize, (column, heading): (usize, &str), fault: Fault| {
+            let error = TableError {
+                line,
+                column: Some(column),
+                heading: heading.to_owned(),
+                fault,
+            };
+            let text = format!("{HEADER}\n{rows}\n");
+            assert_eq!(poses(&text), Err(error.into()), "{rows}");
+        };
+        let text = |cell: &str| cell.to_owned();
+        let word = Fault::NotANumber { cell: text("a") };
+        cell("0,0,0,a,0,0,0,1", 2, (4, "z"), word);
+        let nan = Fault::NotFinite { cell: text("nan") };
+        cell("0,0,0,1,0,0,0,1\n1,nan,0,1,0,0,0,1", 3, (2, "x"), nan);
     }
 
     #[test]

@@ -209,6 +209,6 @@ mod tests {
             1e-3,
             &Assets::default(),
         );
-        assert!(none.expect_err("none").to_string().contains("no picture"));
+        assert!(matches!(none, Err(EditError::NoPicture(_))));
     }
 }

@@ -21,7 +21,7 @@ use maulstick_types::paint::TILE;
 use maulstick_types::scene::Scene;
 use rusqlite::{OptionalExtension as _, params};
 
-use crate::error::DocumentError;
+use crate::error::{DocumentError, RowKind};
 use crate::file::database::{Access, Database, is_new};
 use crate::journal;
 use crate::record::beginning;
@@ -88,7 +88,7 @@ impl Opened {
     /// Checks that as many tiles, steps and versions are there as were written.
     ///
     /// # Errors
-    /// [`DocumentError::Damaged`] with what is missing.
+    /// [`DocumentError::Rows`].
     pub fn check(&self) -> Result<(), DocumentError> {
         let Restored {
             kept: snapshot,
@@ -109,15 +109,18 @@ impl Opened {
             })
         };
         let tiles = tiles.iter().filter(|(place, _)| is_inside(place)).count();
-        for (what, found, written) in [
-            ("tiles", tiles, rows.tiles),
-            ("steps of its history", steps.len(), rows.steps),
-            ("versions", named.len(), rows.versions),
+        for (kind, found, written) in [
+            (RowKind::Tiles, tiles, rows.tiles),
+            (RowKind::Steps, steps.len(), rows.steps),
+            (RowKind::Versions, named.len(), rows.versions),
         ] {
-            if found as u64 != written {
-                return Err(damaged(format!(
-                    "{found} of its {written} {what} are there"
-                )));
+            let (rows, found) = (kind, found as u64);
+            if found != written {
+                return Err(DocumentError::Rows {
+                    rows,
+                    found,
+                    written,
+                });
             }
         }
         Ok(())

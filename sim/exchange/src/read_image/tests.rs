@@ -225,7 +225,12 @@ fn the_marks_of_a_png_are_obeyed_by_their_precedence() {
         !near([MIDDLE; 3], [128.0 / 255.0; 3], 0.02),
         "a fault would pass"
     );
-    // A profile comes before sRGB's mark, and after cICP.
+}
+
+/// A profile comes before sRGB's mark, and after cICP.
+#[test]
+fn a_profile_among_the_marks_of_a_png() {
+    let (grey, wide) = ([128; 3], [0.0, 1.0, 0.0]);
     let icc = Profile::of(RgbSpace::DisplayP3).icc().to_vec();
     let profiled = |codes: Option<[u8; 4]>, pixel: [u8; 3]| {
         let mut bytes = Vec::new();

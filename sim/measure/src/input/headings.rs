@@ -2,6 +2,7 @@
 
 use crate::error::MeasureError;
 use crate::table::Table;
+use crate::warning::Warning;
 use maulstick_optics::paints::check_paint_name;
 
 /// Columns that are neither a paint nor a wavelength.
@@ -119,15 +120,14 @@ impl Headings {
 
     /// Warnings about the grid: it ends early, or it skips a wavelength.
     #[must_use]
-    pub fn warnings(&self) -> Vec<String> {
+    pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = Vec::new();
         let nm: Vec<f64> = self.wavelengths.iter().map(|(_, nm)| *nm).collect();
         if let [first, .., last] = nm.as_slice()
             && (*first > 400.0 || *last < 700.0)
         {
-            warnings.push(format!(
-                "the readings end at {first} and {last} nm: beyond, K and S of the ends are held"
-            ));
+            let (first, last) = (*first, *last);
+            warnings.push(Warning::Range { first, last });
         }
         let mut steps: Vec<f64> = nm.windows(2).map(|pair| pair[1] - pair[0]).collect();
         steps.sort_by(f64::total_cmp);
@@ -135,10 +135,8 @@ impl Headings {
         for pair in nm.windows(2) {
             let step = pair[1] - pair[0];
             if step > 1.5 * usual && step > 5.0 {
-                warnings.push(format!(
-                    "no reading between {} and {} nm, where others are {usual} nm apart: interpolated",
-                    pair[0], pair[1]
-                ));
+                let (from, to) = (pair[0], pair[1]);
+                warnings.push(Warning::Gap { from, to, usual });
             }
         }
         warnings
@@ -190,7 +188,8 @@ mod tests {
             error("sample,500,600,700"),
             "line 1: no column names a paint"
         );
-        assert!(error("White,500,600").contains("fewer than three wavelengths"));
+        assert!(headings("White,500,600").is_err());
+        assert!(headings("White,500,600,700").is_ok());
     }
 
     #[test]
@@ -199,7 +198,7 @@ mod tests {
             .expect("good")
             .warnings();
         assert_eq!(warned.len(), 3, "{warned:?}");
-        assert!(warned[1].contains("between 420 and 440 nm"));
+        assert!(matches!(warned[1], Warning::Gap { from, to, .. } if (from, to) == (420.0, 440.0)));
         assert!(
             headings("White,380,390,400,700")
                 .expect("good")

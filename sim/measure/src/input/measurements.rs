@@ -9,6 +9,7 @@ use crate::instrument;
 use crate::notes::Notes;
 use crate::reading::{Kind, Reading};
 use crate::table::Table;
+use crate::warning::Warning;
 
 /// Reflectances above this are taken for a mistake.
 pub const GREATEST_READING: f64 = 1.2;
@@ -34,7 +35,7 @@ pub struct Measurements {
     /// Its notes.
     pub notes: Notes,
     /// Guesses that were made.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// A sample.
@@ -283,7 +284,7 @@ fn layer(
     headings: &Headings,
     row: Row<'_>,
     grounds: &[(&str, &[f64])],
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
 ) -> Result<Layer, MeasureError> {
     let cell = |reserved: &str| {
         let column = headings.column(reserved)?;
@@ -329,7 +330,7 @@ fn ground(
     headings: &Headings,
     (line, (column, text)): (usize, (usize, &str)),
     grounds: &[(&str, &[f64])],
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
 ) -> Result<Ground, MeasureError> {
     let wavelengths = headings.wavelengths.len();
     let named: Vec<&[f64]> = grounds
@@ -342,19 +343,17 @@ fn ground(
             |i: usize| named.iter().map(|values| values[i]).sum::<f64>() / named.len() as f64;
         return Ok(Ground::Read((0..wavelengths).map(mean).collect()));
     }
-    let mut guessed = |what: String| {
-        if !warnings.contains(&what) {
-            warnings.push(what);
+    let mut guessed = |guess: Warning| {
+        if !warnings.contains(&guess) {
+            warnings.push(guess);
         }
     };
     if text.eq_ignore_ascii_case("black") {
-        guessed("no row of kind ground is called 'black': it is taken to reflect nothing".into());
+        guessed(Warning::BlackGround);
         return Ok(Ground::Black);
     }
     if text.eq_ignore_ascii_case("white") {
-        guessed(format!(
-            "no row of kind ground is called 'white': it is taken to reflect {CHART_WHITE}, as opacity charts do"
-        ));
+        guessed(Warning::WhiteGround(CHART_WHITE));
         return Ok(Ground::Read(vec![CHART_WHITE; wavelengths]));
     }
     match table.number(text).ok() {

@@ -198,11 +198,7 @@ mod tests {
             unknown.to_string(),
             "line 1: no column is called 'Colbat Blue'"
         );
-        assert!(
-            unknown.help.starts_with("did you mean 'Cobalt Blue'?"),
-            "{}",
-            unknown.help
-        );
+        assert!(unknown.help.contains("'Cobalt Blue'"), "{}", unknown.help);
         assert!(
             error("#\n# surface: 0.7, 0.65")
                 .to_string()
@@ -214,10 +210,6 @@ mod tests {
                 .to_string()
                 .contains("'x'")
         );
-        assert!(
-            error("# colour index: PB28")
-                .to_string()
-                .contains("names no colour index")
-        );
+        assert!(error("# colour index: PB28").what.contains("'PB28'"));
     }
 }

@@ -5,6 +5,7 @@
 //! masstone, and its tints 1:1 and 1:10 with the white, are foretold within a small error.
 
 use crate::measurements::Measurements;
+use crate::warning::Warning;
 use crate::wavelength::{Observation, PRIOR_SD, Unknowns, Wavelength, gradient};
 
 /// Shares of a paint in the mixtures with the white by which it is judged.
@@ -40,13 +41,13 @@ pub fn unit_information(one: &Wavelength<'_>, at: &Unknowns) -> f64 {
     (1.0 / variance - 1.0 / (crate::wavelength::UNIT_SD * crate::wavelength::UNIT_SD)).max(0.0)
 }
 
-/// A sentence for each paint that is ill-determined, with what to measure.
+/// A warning for each paint that is ill-determined.
 #[must_use]
 pub fn warnings(
     measured: &Measurements,
     spectrum: &[(f64, Wavelength<'_>)],
     found: &[Unknowns],
-) -> Vec<String> {
+) -> Vec<Warning> {
     let paints = measured.paints.len();
     // Sum of variances, and the worst deviation with its wavelength, a paint and trial.
     let mut sums = vec![[0.0f64; TRIALS.len()]; paints];
@@ -76,15 +77,13 @@ pub fn warnings(
         let rms = sums[j].iter().map(mean).fold(0.0, f64::max);
         if rms > TOO_MUCH {
             let (most, nm) = worst[j];
-            let remedy = if name == white {
-                "add readings of it by itself".to_owned()
-            } else {
-                format!("add readings of it by itself, and mixed 1:1 and 1:10 with '{white}'")
-            };
-            warnings.push(format!(
-                "'{name}' is ill-determined: its tints may be off by {rms:.2} in reflectance \
-                 ({most:.2} near {nm:.0} nm); what is missing was filled in from a usual paint; {remedy}"
-            ));
+            warnings.push(Warning::Indeterminate {
+                paint: name.clone(),
+                white: white.clone(),
+                rms,
+                most,
+                nm,
+            });
         }
     }
     warnings

@@ -7,6 +7,7 @@ use maulstick_optics::{Illuminant, Observer, Paint, km};
 use crate::influence::Suspect;
 use crate::measurements::{Ground, Layer, Measurements, Sample};
 use crate::surface::{Surface, internal_ground};
+use crate::warning::Warning;
 
 /// Residual of a sample.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,16 +73,17 @@ fn predicted(
     }))
 }
 
-/// A sentence for each suspect row, with what to do.
+/// A warning for each suspect row.
 #[must_use]
-pub fn warnings(residuals: &[Residual], suspects: &[Suspect]) -> Vec<String> {
+pub fn warnings(residuals: &[Residual], suspects: &[Suspect]) -> Vec<Warning> {
     let suspects = suspects.iter().map(|suspect| {
         let one = &residuals[suspect.sample];
-        format!(
-            "line {}: '{}' is off by ΔE₀₀ {:.1}, and without it the others fit {:.1} times as well: check \
-             its shares and its reading",
-            one.line, one.name, one.delta_e, suspect.gain
-        )
+        Warning::Suspect {
+            line: one.line,
+            sample: one.name.clone(),
+            delta_e: one.delta_e,
+            gain: suspect.gain,
+        }
     });
     suspects.collect()
 }

@@ -62,32 +62,62 @@ pub enum PaintError {
     #[error(transparent)]
     Mixture(#[from] MixtureError),
     /// A line of a paint file cannot be read.
-    #[error("line {line}: {what}")]
+    #[error("line {line}: {fault}")]
     File {
         /// The line, from 1.
         line: usize,
         /// The defect.
-        what: String,
+        fault: FileFault,
     },
 }
 
-/// A paint of a file that has both of its rows, K and S; the file ends at this line.
-fn whole(
-    (name, colour_index, source): (String, String, String),
-    rows: Option<[Option<Spectrum>; 2]>,
-    line: usize,
-) -> Result<Paint, PaintError> {
-    let Some([Some(k), Some(s)]) = rows else {
-        let what = format!("'{name}' lacks its row of K or of S");
-        return Err(PaintError::File { line, what });
-    };
-    Ok(Paint {
-        name,
-        colour_index,
-        source,
-        k,
-        s,
-    })
+/// A defect of a paint file. Columns are counted from 1.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FileFault {
+    /// The text is no table.
+    #[error("{}", .0.what())]
+    Table(maulstick_tables::TableError),
+    /// Columns of a row that has not one for each value.
+    #[error("{0} columns instead of {COLUMNS}")]
+    Columns(usize),
+    /// A heading that is not the wavelength of its column.
+    #[error("column {column}: wavelength '{cell}' instead of {nm}")]
+    Wavelength {
+        /// The column.
+        column: usize,
+        /// The heading.
+        cell: String,
+        /// The wavelength, nm.
+        nm: f64,
+    },
+    /// K or S out of range.
+    #[error("column {column}: {} is not 0 to {MOST:.0}", shown(.cell))]
+    Value {
+        /// The column.
+        column: usize,
+        /// The cell.
+        cell: String,
+    },
+    /// A quantity that is neither K nor S.
+    #[error("quantity '{}' is neither K nor S", shown(.0))]
+    Quantity(String),
+    /// A name that no paint may have.
+    #[error(transparent)]
+    Name(#[from] PaintNameError),
+    /// A second row of K or of S.
+    #[error("a second row of {quantity} of '{paint}'")]
+    Twice {
+        /// K or S.
+        quantity: String,
+        /// The paint.
+        paint: String,
+    },
+    /// The paint without a row of K or of S.
+    #[error("'{0}' lacks its row of K or of S")]
+    Half(String),
+    /// No paint.
+    #[error("the file holds no paint")]
+    Empty,
 }
 
 fn meant(nearest: Option<&str>) -> String {
@@ -138,23 +168,28 @@ impl From<maulstick_tables::TableError> for PaintError {
     fn from(error: maulstick_tables::TableError) -> Self {
         Self::File {
             line: error.line,
-            what: error.what(),
+            fault: FileFault::Table(error),
         }
     }
 }
 
 /// Columns before the values.
 const NAMED: usize = 4;
+/// Columns of a row.
+const COLUMNS: usize = NAMED + SAMPLES;
 
 /// The header names the wavelengths of the samples.
 fn check_header(row: Row<'_>) -> Result<(), PaintError> {
     for column in NAMED..row.len() {
         let nm = crate::spectrum::wavelength(column - NAMED);
         if row.number(column)? != nm {
-            let cell = row.cell(column).to_owned();
             return Err(PaintError::File {
                 line: row.line(),
-                what: format!("column {}: wavelength '{cell}' instead of {nm}", column + 1),
+                fault: FileFault::Wavelength {
+                    column: column + 1,
+                    cell: row.cell(column).to_owned(),
+                    nm,
+                },
             });
         }
     }
@@ -167,10 +202,12 @@ fn spectrum(row: Row<'_>) -> Result<Spectrum, PaintError> {
     for (column, value) in (NAMED..).zip(&mut values) {
         let number = row.number(column)?;
         if !(0.0..=MOST).contains(&number) {
-            let cell = shown(row.cell(column));
             return Err(PaintError::File {
                 line: row.line(),
-                what: format!("column {}: {cell} is not 0 to {MOST:.0}", column + 1),
+                fault: FileFault::Value {
+                    column: column + 1,
+                    cell: row.cell(column).to_owned(),
+                },
             });
         }
         *value = number * WHITE_S_PER_M;
@@ -209,17 +246,14 @@ impl PaintLibrary {
         let mut order: Vec<(String, String, String)> = Vec::new();
         let table = Table::parse(text, HeadingLine::Row)?;
         for row in table.rows() {
-            let fault = |what: String| PaintError::File {
-                line: row.line(),
-                what,
-            };
+            let line = row.line();
+            let fault = |fault| PaintError::File { line, fault };
             if row.cell(0).eq_ignore_ascii_case("paint") {
                 check_header(row)?;
                 continue;
             }
-            let (cells, columns) = (row.len(), NAMED + SAMPLES);
-            if cells != columns {
-                return Err(fault(format!("{cells} columns instead of {columns}")));
+            if row.len() != COLUMNS {
+                return Err(fault(FileFault::Columns(row.len())));
             }
             let values = spectrum(row)?;
             let [name, colour_index, source, quantity] =
@@ -227,30 +261,38 @@ impl PaintLibrary {
             let place = match quantity {
                 "K" => 0,
                 "S" => 1,
-                other => {
-                    let what = format!("quantity '{}' is neither K nor S", shown(other));
-                    return Err(fault(what));
-                }
+                other => return Err(fault(FileFault::Quantity(other.to_owned()))),
             };
             if !found.contains_key(name) {
-                check_paint_name(name).map_err(|error| fault(error.to_string()))?;
+                check_paint_name(name).map_err(|error| fault(error.into()))?;
                 order.push((name.into(), colour_index.into(), source.into()));
             }
             let rows = found.entry(name.to_owned()).or_default();
             if rows[place].replace(values).is_some() {
-                return Err(fault(format!("a second row of {quantity} of '{name}'")));
+                let (quantity, paint) = (quantity.to_owned(), name.to_owned());
+                return Err(fault(FileFault::Twice { quantity, paint }));
             }
         }
-        let line = table.last_line();
-        let paints = order.into_iter().map(|own| {
-            let rows = found.remove(&own.0);
-            whole(own, rows, line)
-        });
-        let paints: Vec<Paint> = paints.collect::<Result<_, _>>()?;
+        let mut paints = Vec::new();
+        for (name, colour_index, source) in order {
+            let Some([Some(k), Some(s)]) = found.remove(&name) else {
+                return Err(PaintError::File {
+                    line: table.last_line(),
+                    fault: FileFault::Half(name),
+                });
+            };
+            paints.push(Paint {
+                name,
+                colour_index,
+                source,
+                k,
+                s,
+            });
+        }
         if paints.is_empty() {
             return Err(PaintError::File {
                 line: 1,
-                what: "the file holds no paint".into(),
+                fault: FileFault::Empty,
             });
         }
         Ok(Self {
@@ -312,6 +354,8 @@ impl PaintLibrary {
 
 #[cfg(test)]
 mod tests {
+    use maulstick_tables::Fault;
+
     use super::*;
 
     #[test]
@@ -328,36 +372,71 @@ mod tests {
     #[test]
     fn an_unknown_paint_gets_the_nearest_name() {
         let library = PaintLibrary::measured().expect("the file is whole");
-        let error = library.find("Colbat Blue").expect_err("misspelt");
-        assert_eq!(
-            error.to_string(),
-            "there is no paint called 'Colbat Blue'; did you mean 'Cobalt Blue'?"
-        );
-        let error = library.find("zzz").expect_err("far from all");
-        assert_eq!(error.to_string(), "there is no paint called 'zzz'");
+        for (name, nearest) in [("Colbat Blue", Some("Cobalt Blue")), ("zzz", None)] {
+            let (name, nearest) = (name.to_owned(), nearest.map(str::to_owned));
+            let found = library.find(&name).cloned();
+            assert_eq!(found, Err(PaintError::Unknown { name, nearest }));
+        }
     }
 
     #[test]
-    fn a_broken_file_names_its_line() {
+    fn refuses_broken_files() {
         let row = |quantity: &str, value: &str| {
             format!("X,PX,me,{quantity}{}", format!(",{value}").repeat(SAMPLES))
         };
-        let error = |text: String| PaintLibrary::parse(&text).expect_err("broken").to_string();
-        assert!(error("X,PX,me,K,1".into()).starts_with("line 1: 5 columns"));
-        assert!(error(row("K", "x")).starts_with("line 1: column 5: 'x'"));
-        assert!(error(row("K", "-1")).contains("not 0 to"));
-        assert!(error(row("K", "NaN")).contains("column 5: 'NaN'"));
-        assert!(error(row("Q", "1")).contains("neither K nor S"));
-        assert!(error(row("K", "1")).contains("lacks its row"));
-        assert!(error(String::new()).contains("no paint"));
-        assert!(error(row("K", "1e300")).contains("not 0 to"));
-        let twice = format!("{}\n{}", row("K", "1"), row("K", "2"));
-        assert!(error(twice).starts_with("line 2: a second row of K of 'X'"));
-        for (name, word) in [("a=b", "mixtures"), ("thinner", "medium"), (" ", "no name")] {
-            let named = row("K", "1").replacen('X', name, 1);
-            assert!(error(named).contains(word), "{name}");
+        let named = |name: &str| row("K", "1").replacen('X', name, 1);
+        let value = |cell: &str| FileFault::Value {
+            column: 5,
+            cell: cell.to_owned(),
+        };
+        let twice = FileFault::Twice {
+            quantity: "K".to_owned(),
+            paint: "X".to_owned(),
+        };
+        let wavelength = FileFault::Wavelength {
+            column: 6,
+            cell: "380".to_owned(),
+            nm: 384.0,
+        };
+        let character = PaintNameError::Character("a=b".to_owned());
+        for (text, line, fault) in [
+            ("X,PX,me,K,1".to_owned(), 1, FileFault::Columns(5)),
+            (row("K", "-1"), 1, value("-1")),
+            (row("K", "1e300"), 1, value("1e300")),
+            (row("Q", "1"), 1, FileFault::Quantity("Q".to_owned())),
+            (row("K", "1"), 1, FileFault::Half("X".to_owned())),
+            (String::new(), 1, FileFault::Empty),
+            (format!("{}\n{}", row("K", "1"), row("K", "2")), 2, twice),
+            (named("a=b"), 1, character.into()),
+            (named("thinner"), 1, PaintNameError::Thinner.into()),
+            (named(" "), 1, PaintNameError::Blank.into()),
+            (
+                format!("paint,i,s,q{}", ",380".repeat(SAMPLES)),
+                1,
+                wavelength,
+            ),
+        ] {
+            let found = PaintLibrary::parse(&text);
+            assert_eq!(found, Err(PaintError::File { line, fault }));
         }
-        let header = format!("paint,i,s,q{}", ",380".repeat(SAMPLES));
-        assert!(error(header).starts_with("line 1: column 6: wavelength '380' instead of 384"));
+        for (cell, fault) in [
+            (
+                "x",
+                Fault::NotANumber {
+                    cell: "x".to_owned(),
+                },
+            ),
+            (
+                "NaN",
+                Fault::NotFinite {
+                    cell: "NaN".to_owned(),
+                },
+            ),
+        ] {
+            let found = PaintLibrary::parse(&row("K", cell));
+            assert!(
+                matches!(found, Err(PaintError::File { line: 1, fault: FileFault::Table(error) }) if error.column == Some(5) && error.fault == fault)
+            );
+        }
     }
 }

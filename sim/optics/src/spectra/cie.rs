@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use crate::spectrum::{Spectrum, interpolate};
-use crate::spectrum_file::TableError;
+use crate::spectrum_error::{DarkError, NARROWEST, TableError};
 
 /// A standard observer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,22 +22,6 @@ pub struct Illuminant {
     pub name: String,
     /// Relative power.
     pub power: Spectrum,
-}
-
-/// A light has power at this many of the samples or more: the most that a rule takes.
-const NARROWEST: usize = 16;
-
-/// A light by which no colours are seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum DarkError {
-    /// Too few wavelengths.
-    #[error(
-        "the light has power at {0} of the 101 wavelengths from 380 to 780 nm, 4 nm apart; colours take {NARROWEST}"
-    )]
-    Narrow(usize),
-    /// A response that it does not excite.
-    #[error("the light leaves one of X, Y and Z dark, so no colour is seen by it")]
-    Response,
 }
 
 /// Names of the illuminants that come with the crate.
@@ -107,7 +91,7 @@ impl Illuminant {
             Ok(()) => Ok(light),
             Err(dark) => Err(TableError {
                 line: text.lines().count().max(1),
-                what: dark.to_string(),
+                fault: dark.into(),
             }),
         }
     }

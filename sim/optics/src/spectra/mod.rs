@@ -4,5 +4,6 @@ pub mod cie;
 pub mod quadrature;
 pub mod rule;
 pub mod spectrum;
+pub mod spectrum_error;
 pub mod spectrum_file;
 pub mod upsampling;

@@ -7,37 +7,16 @@
 //! 385,52.31
 //! ```
 
-use maulstick_tables::{HeadingLine, Table, shown};
+use maulstick_tables::{HeadingLine, Table};
 
 use crate::spectrum::{Spectrum, bin, resample};
+use crate::spectrum_error::{COVERED, Range, SpectrumFault, TableError};
 use crate::surface::SurfaceCorrection;
-
-/// A defect of a table and its place.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {what}")]
-pub struct TableError {
-    /// The line, from 1.
-    pub line: usize,
-    /// The defect, with the column.
-    pub what: String,
-}
-
-impl From<maulstick_tables::TableError> for TableError {
-    fn from(error: maulstick_tables::TableError) -> Self {
-        Self {
-            line: error.line,
-            what: error.what(),
-        }
-    }
-}
 
 /// Instruments read nothing as a little less than nothing, by this share of the greatest reading at most.
 const DARK: f64 = 0.01;
 /// They read a white that is as white as their standard as more than 1, by this at most.
 const MOST_ABOVE_WHITE: f64 = 0.05;
-
-/// A spectrum covers this at least, nm: beyond its ends it is held.
-const COVERED: [f64; 2] = [420.0, 680.0];
 
 impl Spectrum {
     /// Reads the power of a light: a column of values of 0 or more over wavelengths in nm, which must
@@ -50,7 +29,7 @@ impl Spectrum {
         let mut rows = rows(&table)?;
         let greatest = rows.iter().map(|row| row.value).fold(0.0, f64::max);
         for row in &mut rows {
-            row.within([-DARK * greatest, f64::MAX], [0.0, f64::MAX], "0 or more")?;
+            row.within([-DARK * greatest, f64::MAX], [0.0, f64::MAX], Range::Power)?;
         }
         Ok(bin(&whole(&table, &rows)?))
     }
@@ -82,9 +61,8 @@ impl Reflectance {
                 "excluded" => true,
                 "included" => false,
                 other => {
-                    let what = format!("'{}' is not `included` or `excluded`", shown(other));
-                    let line = note.line;
-                    return Err(TableError { line, what });
+                    let (line, fault) = (note.line, SpectrumFault::Specular(other.to_owned()));
+                    return Err(TableError { line, fault });
                 }
             };
         }
@@ -94,7 +72,7 @@ impl Reflectance {
             let is_limited = row.within(
                 [-DARK, 1.0 + MOST_ABOVE_WHITE],
                 [0.0, 1.0],
-                "a reflectance of 0 to 1",
+                Range::Reflectance,
             )?;
             limited += usize::from(is_limited);
         }
@@ -129,7 +107,12 @@ struct Reading {
 
 impl Reading {
     /// Brings a value within `used` that lies within `given`; true if it was not.
-    fn within(&mut self, given: [f64; 2], used: [f64; 2], range: &str) -> Result<bool, TableError> {
+    fn within(
+        &mut self,
+        given: [f64; 2],
+        used: [f64; 2],
+        range: Range,
+    ) -> Result<bool, TableError> {
         let Self {
             line,
             column,
@@ -137,8 +120,12 @@ impl Reading {
             ..
         } = *self;
         if !(given[0]..=given[1]).contains(&value) {
-            let what = format!("column {column}: {value} is not {range}");
-            return Err(TableError { line, what });
+            let fault = SpectrumFault::Value {
+                column,
+                value,
+                range,
+            };
+            return Err(TableError { line, fault });
         }
         self.value = value.clamp(used[0], used[1]);
         Ok(self.value != value)
@@ -163,15 +150,14 @@ fn rows(table: &Table) -> Result<Vec<Reading>, TableError> {
         let line = row.line();
         let numbers = row.numbers::<2>()?;
         let [nm, value] = [numbers[first.min(1)], numbers[1 - first.min(1)]];
-        let fault = |what: String| {
-            let what = format!("column {}: {what}", first + 1);
-            Err(TableError { line, what })
-        };
+        let column = first + 1;
         if !(100.0..=5000.0).contains(&nm) {
-            return fault(format!("{nm} is no wavelength in nm"));
+            let fault = SpectrumFault::Wavelength { column, nm };
+            return Err(TableError { line, fault });
         }
         if let Some(before) = rows.last().map(|row| row.nm).filter(|before| *before >= nm) {
-            return fault(format!("{nm} nm after {before} nm; they must rise"));
+            let fault = SpectrumFault::Falling { column, nm, before };
+            return Err(TableError { line, fault });
         }
         rows.push(Reading {
             line,
@@ -185,47 +171,94 @@ fn rows(table: &Table) -> Result<Vec<Reading>, TableError> {
 
 /// Wavelengths and values, if they cover the visible.
 fn whole(table: &Table, rows: &[Reading]) -> Result<Vec<[f64; 2]>, TableError> {
-    let fault = |what: String| TableError {
-        line: table.last_line(),
-        what,
-    };
+    let line = table.last_line();
+    let fault = |fault| TableError { line, fault };
     let [first, .., last] = rows else {
-        return Err(fault("a spectrum takes two wavelengths or more".into()));
+        return Err(fault(SpectrumFault::Short));
     };
     if first.nm > COVERED[0] || last.nm < COVERED[1] {
-        return Err(fault(format!(
-            "the spectrum goes from {} to {} nm; give it from {} or less to {} or more",
-            first.nm, last.nm, COVERED[0], COVERED[1]
-        )));
+        return Err(fault(SpectrumFault::Part(first.nm, last.nm)));
     }
     Ok(rows.iter().map(|row| [row.nm, row.value]).collect())
 }
 
 #[cfg(test)]
 mod tests {
+    use maulstick_tables::Fault;
+
     use super::*;
 
     #[test]
-    fn any_grid_is_read_and_a_bad_cell_is_named() {
+    fn any_grid() {
         let spectrum = Spectrum::parse("# mine\nnm,power\n380, 1\n500,1\n780,1\n").expect("good");
         assert!(spectrum.0.iter().all(|v| (v - 1.0).abs() < 1e-12));
-        let error = |text: &str| Spectrum::parse(text).expect_err("bad").to_string();
-        assert_eq!(
-            error("380,1\n390,x"),
-            "line 2: column 2: 'x' is not a number"
-        );
-        assert_eq!(
-            error("380,1\n370,1"),
-            "line 2: column 1: 370 nm after 380 nm; they must rise"
-        );
-        assert!(error("380,1,2").starts_with("line 1: 3 columns"));
-        assert_eq!(error("380,-1"), "line 1: column 2: -1 is not 0 or more");
-        assert!(error("380,NaN\n390,1").starts_with("line 1: column 2: 'NaN'"));
-        assert_eq!(error("4,1"), "line 1: column 1: 4 is no wavelength in nm");
-        assert_eq!(
-            error(""),
-            "line 1: a spectrum takes two wavelengths or more"
-        );
+    }
+
+    fn falling(nm: f64, before: f64) -> SpectrumFault {
+        SpectrumFault::Falling {
+            column: 1,
+            nm,
+            before,
+        }
+    }
+
+    fn out_of(range: Range, value: f64) -> SpectrumFault {
+        SpectrumFault::Value {
+            column: 2,
+            value,
+            range,
+        }
+    }
+
+    #[test]
+    fn refuses_bad_cells() {
+        let (column, nm) = (1, 4.0);
+        for (text, line, fault) in [
+            ("380,1\n370,1", 2, falling(370.0, 380.0)),
+            ("380,-1", 1, out_of(Range::Power, -1.0)),
+            ("4,1", 1, SpectrumFault::Wavelength { column, nm }),
+            ("", 1, SpectrumFault::Short),
+        ] {
+            assert_eq!(Spectrum::parse(text), Err(TableError { line, fault }));
+        }
+        let cell = |cell: &str| cell.to_owned();
+        let wide = Fault::Wide {
+            cells: 3,
+            columns: 2,
+        };
+        for (text, at, fault) in [
+            (
+                "380,1\n390,x",
+                (2, Some(2)),
+                Fault::NotANumber { cell: cell("x") },
+            ),
+            (
+                "380,NaN\n390,1",
+                (1, Some(2)),
+                Fault::NotFinite { cell: cell("NaN") },
+            ),
+            ("380,1,2", (1, None), wide),
+        ] {
+            let SpectrumFault::Table(error) = Spectrum::parse(text).expect_err(text).fault else {
+                panic!("{text}");
+            };
+            assert_eq!((error.line, error.column), at, "{text}");
+            assert_eq!(error.fault, fault, "{text}");
+        }
+    }
+
+    #[test]
+    fn refuses_what_is_no_reflectance() {
+        let unknown = SpectrumFault::Specular("some".to_owned());
+        for (text, line, fault) in [
+            ("400,0.5\n410,1.5", 2, out_of(Range::Reflectance, 1.5)),
+            ("400,0.5\n400,0.5", 2, falling(400.0, 400.0)),
+            ("400,0.5", 1, SpectrumFault::Short),
+            ("500,0.5\n600,0.5", 2, SpectrumFault::Part(500.0, 600.0)),
+            ("# specular: some\n400,0.5", 1, unknown),
+        ] {
+            assert_eq!(Reflectance::parse(text), Err(TableError { line, fault }));
+        }
     }
 
     #[test]
@@ -249,18 +282,6 @@ mod tests {
             0.0,
             "no darker than its gloss"
         );
-        let error = |text: &str| Reflectance::parse(text).expect_err("bad").to_string();
-        assert_eq!(
-            error("400,0.5\n410,1.5"),
-            "line 2: column 2: 1.5 is not a reflectance of 0 to 1"
-        );
-        assert_eq!(
-            error("400,0.5\n400,0.5"),
-            "line 2: column 1: 400 nm after 400 nm; they must rise"
-        );
-        assert!(error("400,0.5").contains("two wavelengths"));
-        assert!(error("500,0.5\n600,0.5").contains("420 or less"));
-        assert!(error("# specular: some\n400,0.5").contains("line 1"));
     }
 
     #[test]

@@ -22,6 +22,12 @@ fn is_prose(text: &str) -> bool {
     text.contains(' ') && words(text).any(is_plain)
 }
 
+/// Whether a text is wording: two words or more, not all of which are names, as those of paints.
+fn is_wording(text: &str) -> bool {
+    let is_plain = |word: &str| !word.starts_with(char::is_uppercase);
+    text.contains(' ') && words(text).count() > 1 && words(text).any(is_plain)
+}
+
 /// Whether a comparison finds a text in a message, or the text is hardly more than a message of several words.
 fn is_from(message: &str, sought: &Sought) -> bool {
     let is_part = words(message).count() > 1 && sought.text.contains(message);
@@ -47,14 +53,11 @@ pub(super) fn parsed(tree: &Tree, found: &mut Breaches) {
     }
 }
 
-/// Assertions on the wording of a message: two words or more.
+/// Assertions on the wording of a message.
 pub(super) fn asserted(tree: &Tree, found: &mut Breaches) {
     for (file, facts) in &tree.facts {
         for (text, line) in &facts.asserted {
-            if text.contains(' ')
-                && words(text).count() > 1
-                && !CATALOGUE.iter().any(|folder| below(file, folder))
-            {
+            if is_wording(text) && !CATALOGUE.iter().any(|folder| below(file, folder)) {
                 let what = format!("asserts the words {text:?}: compare data");
                 found.one(file, *line, &what);
             }

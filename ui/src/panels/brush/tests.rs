@@ -65,7 +65,8 @@ fn sliders_ask_for_what_they_say() {
         panic!("{commands:?}")
     };
     assert_eq!(*brush, "main");
-    assert!(toml.contains("width_mm = 12.5"), "{toml}");
+    let file = BrushFile::parse(toml).expect("a brush");
+    assert_eq!(file.head.width_mm, 12.5);
 }
 
 #[test]

@@ -4,6 +4,9 @@ use maulstick_rig::UserError;
 use maulstick_rig::table_file::table_fault;
 use maulstick_tables::{Fault, HeadingLine, Table, TableError};
 
+use super::STEEPEST_TILT_DEG;
+use super::note::Note;
+
 /// Names of the columns, the needed ones first.
 const COLUMNS: [&str; 8] = [
     "t", "x", "y", "pressure", "tilt_x", "tilt_y", "twist", "stroke",
@@ -15,8 +18,6 @@ const NUMBERS: usize = 7;
 const PRESSURE: usize = 3;
 const TILTS: [usize; 2] = [4, 5];
 const STROKE: usize = 7;
-/// Steepest tilt that a brush is held at, degrees.
-const STEEPEST_TILT_DEG: f64 = 85.0;
 /// Steepest tilt of a pen, degrees.
 const FLAT: f64 = 90.0;
 /// Rounding of a number in a table.
@@ -52,7 +53,7 @@ impl Row {
 
 /// The rows of a table; what was rounded into its range is noted. Of a stroke they are for their lines and the column
 /// `stroke`.
-pub(super) fn rows(text: &str, name: &str, notes: &mut Vec<String>) -> Result<Vec<Row>, UserError> {
+pub(super) fn rows(text: &str, name: &str, notes: &mut Vec<Note>) -> Result<Vec<Row>, UserError> {
     let fault = |error: TableError| match &error.fault {
         Fault::UnknownColumn { name: heading } => {
             let word = heading.to_lowercase();
@@ -173,19 +174,9 @@ impl Limits {
         Ok(within)
     }
 
-    fn notes(self) -> Vec<String> {
-        let pressures = (self.pressures > 0).then(|| {
-            let count = self.pressures;
-            format!(
-                "{count} pressures lie outside of 0 to 1 by no more than rounding: taken as 0 and 1"
-            )
-        });
-        let tilts = (self.tilts > 0).then(|| {
-            let count = self.tilts;
-            format!(
-                "{count} tilts are steeper than {STEEPEST_TILT_DEG}°: taken as {STEEPEST_TILT_DEG}°"
-            )
-        });
-        pressures.into_iter().chain(tilts).collect()
+    fn notes(self) -> impl Iterator<Item = Note> {
+        let pressures = (self.pressures > 0).then_some(Note::Pressures(self.pressures));
+        let tilts = (self.tilts > 0).then_some(Note::Tilts(self.tilts));
+        pressures.into_iter().chain(tilts)
     }
 }

@@ -3,11 +3,11 @@
 use maulstick_rig::UserError;
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
+use super::PAUSE_NS;
 use super::columns::Row;
+use super::note::Note;
 use crate::take::TakeSample;
 
-/// Shortest time between strokes, ns: contacts that are less far apart are one stroke to a brush.
-const PAUSE_NS: f64 = 200e6;
 /// Longest time of a table, ns: a year.
 const LONGEST_NS: f64 = 3.2e16;
 /// Time from a lift to the contact before or behind it, ns.
@@ -50,11 +50,7 @@ pub(super) fn part(rows: &mut [Row], name: &str) -> Result<(), UserError> {
 ///
 /// # Errors
 /// A [`UserError`] where all samples have the same time.
-pub(super) fn spread(
-    rows: &mut [Row],
-    name: &str,
-    notes: &mut Vec<String>,
-) -> Result<(), UserError> {
+pub(super) fn spread(rows: &mut [Row], name: &str, notes: &mut Vec<Note>) -> Result<(), UserError> {
     let same = |two: &[Row]| two[0].stroke == two[1].stroke;
     let pairs = rows.windows(2).filter(|two| same(two));
     let steps = pairs.map(|two| two[1].time() - two[0].time());
@@ -89,11 +85,10 @@ pub(super) fn spread(
         }
         at += count;
     }
-    notes.push(format!(
-        "t is coarse: {} of {} samples have the time of the one before, and are spread evenly up to the next",
-        ties.len(),
-        rows.len()
-    ));
+    notes.push(Note::Coarse {
+        ties: ties.len(),
+        samples: rows.len(),
+    });
     Ok(())
 }
 
@@ -106,7 +101,7 @@ pub(super) fn times_ns(
     rows: &[Row],
     unit_ns: f64,
     name: &str,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Note>,
 ) -> Result<Vec<u64>, UserError> {
     let begin = rows.first().map_or(0.0, Row::time);
     let (mut shift, mut end) = (0.0, 0.0);
@@ -127,10 +122,7 @@ pub(super) fn times_ns(
     }
     let strokes = rows.last().map_or(0, |row| row.stroke + 1);
     if strokes > 1 {
-        notes.push(format!(
-            "{strokes} strokes: the pen is lifted between them for {} s at least",
-            PAUSE_NS * 1e-9
-        ));
+        notes.push(Note::Strokes(strokes));
     }
     Ok(times)
 }

@@ -60,12 +60,22 @@ fn bad_tables_name_line_and_column() {
         text.contains("column 2") && text.contains("'one'"),
         "{text}"
     );
-    assert!(fault(&format!("{good}0.1 1 1 NaN\n")).contains("'NaN' is not finite"));
-    assert!(fault(&format!("{good}-1 1 1 0\n")).contains("time runs backward"));
-    assert!(fault("0 1 1 1.5\n").contains("1.5 is not within 0 and 1"));
-    assert!(fault("0 1 1 1 91 0\n").contains("tilt_x"));
-    assert!(fault("t x y presure\n0 1 1 1\n").contains("'pressure'"));
-    assert!(fault("# nothing\n").contains("no samples"));
+    for (text, place, data) in [
+        (
+            &format!("{good}0.1 1 1 NaN\n")[..],
+            "strokes.dat:2",
+            "'NaN'",
+        ),
+        (&format!("{good}-1 1 1 0\n"), "strokes.dat:2", "-1"),
+        ("0 1 1 1.5\n", "strokes.dat:1", "1.5"),
+        ("0 1 1 1 91 0\n", "strokes.dat:1", "tilt_x"),
+        ("t x y presure\n0 1 1 1\n", "strokes.dat:1", "'pressure'"),
+        ("# nothing\n", "strokes.dat", ""),
+    ] {
+        let fault = read(text).expect_err(text);
+        assert_eq!(fault.place.as_deref(), Some(place), "{text}");
+        assert!(fault.to_string().contains(data), "{fault}");
+    }
 }
 
 /// Twenty samples of a stroke, `step` apart.
@@ -88,12 +98,14 @@ fn a_byte_order_mark_is_passed_over() {
 
 #[test]
 fn a_unit_of_time_is_guessed_only_where_it_is_safe() {
-    for (step, unit) in [(8.0, "ms"), (16.7, "ms"), (8000.0, "us"), (8e6, "ns")] {
+    use TimeUnit::{Ms, Ns, Us};
+    for (step, unit) in [(8.0, Ms), (16.7, Ms), (8000.0, Us), (8e6, Ns)] {
         let imported = imported(&stroke(step)).expect("a take");
-        let [note] = imported.notes.as_slice() else {
-            panic!("{step}: {:?}", imported.notes);
-        };
-        assert!(note.contains(&format!("{unit}: samples")), "{note}");
+        assert!(
+            matches!(imported.notes[..], [Note::Unit { unit: taken, .. }] if taken == unit),
+            "{step}: {:?}",
+            imported.notes
+        );
         let period = imported.take.samples[1].time_ns;
         assert!(
             (5_000_000..20_000_000).contains(&period),
@@ -127,22 +139,26 @@ fn raw_tablet_units_are_refused_with_the_options_that_fit() {
     for part in ["strokes.dat:2", "10 m", "--size 44000x27901", "--unit-mm"] {
         assert!(said.contains(part), "{said}");
     }
-    let note = &imported("0 100 100 0.5\n0.008 2000 900 0.5\n")
-        .expect("near")
-        .notes[0];
-    assert!(note.contains("1 of 2") && note.contains("--size"), "{note}");
+    let near = imported("0 100 100 0.5\n0.008 2000 900 0.5\n").expect("near");
+    let outside = Note::Outside {
+        beyond: 1,
+        samples: 2,
+        size: [1024.0; 2],
+    };
+    assert_eq!(near.notes[0], outside);
 }
 
 #[test]
 fn what_paints_nothing_is_said() {
     let gap = format!("{}1 420 512 0.5\n1.008 421 512 0.5\n", stroke(0.008));
     let notes = imported(&gap).expect("a take").notes;
-    assert!(
-        notes[0].contains("line 21") && notes[0].contains("0.3 s"),
-        "{notes:?}"
-    );
+    let torn = Note::Torn {
+        line: 21,
+        places: 1,
+    };
+    assert_eq!(notes[0], torn);
     let notes = imported("0 1 1 0\n0.1 2 2 0\n").expect("a take").notes;
-    assert!(notes[0].contains("paints nothing"), "{notes:?}");
+    assert_eq!(notes[0], Note::Unpainted);
     // The pen is lifted in between.
     let lifted = format!("{}0.2 420 512 0\n1 420 512 0.5\n", stroke(0.008));
     assert!(imported(&lifted).expect("a take").notes.is_empty());
@@ -199,10 +215,7 @@ fn strokes_are_parted_with_the_pen_lifted_between() {
         assert!((pause - 0.2).abs() < 1e-9, "{text}: {pause}");
         assert!(found.is_sorted_by(|one, other| one.0 < other.0), "{text}");
         let notes = imported(text).expect("a take").notes;
-        assert!(
-            notes.iter().any(|note| note.starts_with("2 strokes")),
-            "{notes:?}"
-        );
+        assert!(notes.contains(&Note::Strokes(2)), "{notes:?}");
     }
     // A pause of the table's own stays, and so does a pen that was lifted.
     let own = samples("0 300 300 .6\n.008 304 300 0\n\n1 600 700 0\n1.008 604 700 .6\n");
@@ -249,7 +262,8 @@ fn samples_of_one_time_are_spread_and_none_is_lost() {
     // Never over a longer pause.
     let paused = samples("0 1 1 .5\n.01 2 1 .5\n.01 3 1 .5\n5 4 1 .5\n5.01 5 1 .5\n");
     assert!((paused[2].0 - 0.015).abs() < 1e-9, "{paused:?}");
-    assert!(fault("1 1 1 .5\n1 2 1 .5\n").contains("same time"));
+    let same_time = read("1 1 1 .5\n1 2 1 .5\n").expect_err("one time");
+    assert_eq!(same_time.place.as_deref(), Some("strokes.dat"));
 }
 
 #[test]
@@ -263,16 +277,7 @@ fn rounding_is_taken_back_and_noted_and_more_is_refused() {
         .collect();
     assert_eq!(poses, [None, None]);
     assert_eq!(samples("0 1 1 1.000001\n")[0].1, 1.0);
-    assert!(
-        imported.notes[0].starts_with("2 pressures"),
-        "{:?}",
-        imported.notes
-    );
-    assert!(
-        imported.notes[1].starts_with("2 tilts"),
-        "{:?}",
-        imported.notes
-    );
+    assert_eq!(imported.notes[..2], [Note::Pressures(2), Note::Tilts(2)]);
     for text in [
         "0 1 1 1.01\n",
         "0 1 1 -0.01\n",

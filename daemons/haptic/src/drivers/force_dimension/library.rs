@@ -35,6 +35,40 @@ const TIME_GUARD: c_int = 1;
 const RECONNECT: &str =
     "see that it is switched on and calibrated, and unplug it and plug it in again";
 
+/// The reason why no device is opened.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum OpenError {
+    /// An address that is no serial number.
+    Address(String),
+    /// No device of this serial number, but of these.
+    Serial(c_ushort, Vec<c_ushort>),
+    /// No device at all.
+    Absent,
+    /// Words of the library about a device that it cannot open.
+    Closed(String),
+}
+
+impl From<OpenError> for UserError {
+    fn from(error: OpenError) -> Self {
+        match error {
+            OpenError::Address(text) => Self::usage(format!("'{text}' is no serial number"))
+                .help("`address` is the number on the base of the device, 0 to 65535"),
+            OpenError::Serial(wanted, seen) => {
+                let seen: Vec<_> = seen.iter().map(ToString::to_string).collect();
+                Self::failure(format!("there is no device of the serial number {wanted}"))
+                    .help(format!("there are: {}", seen.join(", ")))
+            }
+            OpenError::Absent => {
+                Self::failure("no device of Force Dimension is attached").help(RECONNECT)
+            }
+            OpenError::Closed(said) => {
+                Self::failure(format!("the device cannot be opened: {said}"))
+                    .help("close other programs that use it, and see that you may use its USB port")
+            }
+        }
+    }
+}
+
 /// The device has not answered.
 pub const LOST: DeviceError = DeviceError {
     what: "the device does not answer",
@@ -156,14 +190,11 @@ impl Library {
     /// Opens the device of a serial number, or the first.
     ///
     /// # Errors
-    /// A [`UserError`] where there is none, or the library refuses it.
-    pub fn open(&'static self, serial: Option<&str>) -> Result<Dhd, UserError> {
+    /// [`OpenError`].
+    pub fn open(&'static self, serial: Option<&str>) -> Result<Dhd, OpenError> {
         let wanted = serial.map(|text| {
             let number = text.parse::<c_ushort>();
-            number.map_err(|_| {
-                UserError::usage(format!("'{text}' is no serial number"))
-                    .help("`address` is the number on the base of the device, 0 to 65535")
-            })
+            number.map_err(|_| OpenError::Address(text.to_owned()))
         });
         let wanted = wanted.transpose()?;
         // SAFETY: it has no arguments.
@@ -183,20 +214,14 @@ impl Library {
             if wanted.is_none() || wanted == own {
                 return Ok(dhd);
             }
-            seen.extend(own.map(|own| own.to_string()));
+            seen.extend(own);
         }
         // SAFETY: it has no arguments and returns a text of its own.
         let said = words(unsafe { (self.functions.error_words)() });
         Err(match (wanted, seen.is_empty()) {
-            (Some(wanted), false) => {
-                UserError::failure(format!("there is no device of the serial number {wanted}"))
-                    .help(format!("there are: {}", seen.join(", ")))
-            }
-            _ if count == 0 => {
-                UserError::failure("no device of Force Dimension is attached").help(RECONNECT)
-            }
-            _ => UserError::failure(format!("the device cannot be opened: {said}"))
-                .help("close other programs that use it, and see that you may use its USB port"),
+            (Some(wanted), false) => OpenError::Serial(wanted, seen),
+            _ if count == 0 => OpenError::Absent,
+            _ => OpenError::Closed(said),
         })
     }
 }

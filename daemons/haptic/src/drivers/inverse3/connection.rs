@@ -4,12 +4,12 @@ use std::net::{TcpStream, ToSocketAddrs};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use maulstick_rig::UserError;
 use tungstenite::client::client_with_config;
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Bytes, Error, HandshakeError, Message, WebSocket};
 
 use super::address::Address;
+use super::connect_error::{ConnectError, Refusal};
 
 /// Time without a message after which the service is gone.
 pub const SILENCE: Duration = Duration::from_secs(1);
@@ -47,8 +47,8 @@ impl Connection {
     /// Connects to the service of an address.
     ///
     /// # Errors
-    /// A [`UserError`] if there is no service.
-    pub fn open(address: &Address) -> Result<Self, UserError> {
+    /// [`ConnectError`] if there is no service.
+    pub fn open(address: &Address) -> Result<Self, ConnectError> {
         let stream = reach(address)?;
         let config = WebSocketConfig::default()
             .read_buffer_size(BUFFER)
@@ -63,18 +63,14 @@ impl Connection {
                         "it says nothing".into()
                     }
                 };
-                UserError::failure(format!(
-                    "what listens at {} is no Inverse service: {why}",
-                    address.url
-                ))
-                .help("name the service's own as the device's `address`")
+                ConnectError::new(&address.url, Refusal::Foreign(why))
             })?;
         let connection = Self { socket };
         connection
             .socket
             .get_ref()
             .set_read_timeout(Some(WAIT))
-            .map_err(|error| absent(address, &error.to_string()))?;
+            .map_err(|error| absent(address, error.to_string()))?;
         Ok(connection)
     }
 
@@ -160,11 +156,11 @@ fn bear(error: &Error) -> Result<(), End> {
     }
 }
 
-fn reach(address: &Address) -> Result<TcpStream, UserError> {
+fn reach(address: &Address) -> Result<TcpStream, ConnectError> {
     let hosts = address
         .host
         .to_socket_addrs()
-        .map_err(|error| absent(address, &error.to_string()))?;
+        .map_err(|error| absent(address, error.to_string()))?;
     let mut why = "the host has no address".to_owned();
     for host in hosts {
         let reached = TcpStream::connect_timeout(&host, REACH).and_then(|stream| {
@@ -178,16 +174,9 @@ fn reach(address: &Address) -> Result<TcpStream, UserError> {
             Err(error) => why = error.to_string(),
         }
     }
-    Err(absent(address, &why))
+    Err(absent(address, why))
 }
 
-fn absent(address: &Address, why: &str) -> UserError {
-    UserError::failure(format!(
-        "no Inverse service answers at {}: {why}",
-        address.url
-    ))
-    .help(
-        "start it by `systemctl start haply-inverse-service`, or install it from docs.haply.co; \
-         old ones listen at ws://localhost:10000, which is to be the device's `address` then",
-    )
+fn absent(address: &Address, why: String) -> ConnectError {
+    ConnectError::new(&address.url, Refusal::NoService(why))
 }

@@ -16,6 +16,7 @@
 
 pub mod address;
 pub mod axes;
+pub mod connect_error;
 pub mod connection;
 pub mod link;
 pub mod message;
@@ -31,6 +32,7 @@ use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus;
 
 use self::address::Address;
+use self::connect_error::{ConnectError, Refusal};
 use self::connection::{Connection, End, SILENCE};
 use self::link::{FRESH_NS, Link, RequestedForce};
 use self::message::{Device, Update};
@@ -85,44 +87,32 @@ impl Inverse3 {
     /// Connects to the device of an address.
     ///
     /// # Errors
-    /// A [`UserError`] that says what is missing.
-    pub fn connect(address: &Address) -> Result<Self, UserError> {
+    /// [`ConnectError`].
+    pub fn connect(address: &Address) -> Result<Self, ConnectError> {
         let mut connection = Connection::open(address)?;
         let update = inventory(&mut connection, address)?;
         let device = chosen(&update, address)?;
         let id = device.device_id.clone();
+        let refused = |refusal| Err(ConnectError::new(&address.url, refusal));
         if device.is_in_use() {
-            let what = format!(
-                "the Inverse3 {id} at {} is in use by another program",
-                address.url
-            );
-            return Err(UserError::failure(what).help("end the other program"));
+            return refused(Refusal::InUse(id));
         }
         let max_force_n = max_force_n(device.kind());
         let has_grip = update.grip(address.grip.as_deref()).is_some();
         if let (Some(grip), false) = (&address.grip, has_grip) {
-            let ids: Vec<&str> = update.grips().collect();
-            return Err(UserError::failure(format!(
-                "the Inverse service at {} sees no VerseGrip {grip}",
-                address.url
-            ))
-            .help(if ids.is_empty() {
-                "switch it on, or leave it out of `address`".to_owned()
-            } else {
-                format!("switch it on; there are: {}", ids.join(", "))
-            }));
+            let others = update.grips().map(str::to_owned).collect();
+            return refused(Refusal::NoGrip(grip.clone(), others));
         }
         let mut tracker = DeviceTracker::new(&id, address.grip.as_deref());
         if let state::Seen::Hindered(hindrance) = tracker.take(&update, monotonic_ns()) {
-            let what = format!("{} ({id} at {})", hindrance.what(), address.url);
-            return Err(UserError::failure(what).help(hindrance.help()));
+            return refused(Refusal::Hindered(id, hindrance));
         }
-        let link = Link::start(connection, tracker, update.dialect())
-            .map_err(|error| UserError::failure(format!("no thread for the Inverse3: {error}")))?;
-        let handle = if has_grip {
-            stylus::axes::ORIENTATION | stylus::axes::SWITCHES
-        } else {
-            0
+        let link = Link::start(connection, tracker, update.dialect()).map_err(|error| {
+            ConnectError::new(&address.url, Refusal::NoThread(error.to_string()))
+        })?;
+        let handle = match has_grip {
+            true => stylus::axes::ORIENTATION | stylus::axes::SWITCHES,
+            false => 0,
         };
         Ok(Self {
             link,
@@ -155,14 +145,8 @@ fn max_force_n(kind: Option<&str>) -> f64 {
 }
 
 /// The service's first message, which names all devices.
-fn inventory(connection: &mut Connection, address: &Address) -> Result<Update, UserError> {
-    let foreign = |why: String| {
-        UserError::failure(format!(
-            "what answers at {} is no Inverse service: {why}",
-            address.url
-        ))
-        .help("name the service's own as the device's `address`")
-    };
+fn inventory(connection: &mut Connection, address: &Address) -> Result<Update, ConnectError> {
+    let foreign = |why: String| ConnectError::new(&address.url, Refusal::Foreign(why));
     let bytes = connection
         .receive(&AtomicBool::new(false), SILENCE)
         .map_err(|end| match end {
@@ -174,33 +158,18 @@ fn inventory(connection: &mut Connection, address: &Address) -> Result<Update, U
 }
 
 /// The device that an address means.
-fn chosen<'a>(update: &'a Update, address: &Address) -> Result<&'a Device, UserError> {
-    let ids = || {
-        let ids: Vec<&str> = update
-            .devices()
-            .iter()
-            .map(|device| device.device_id.as_str())
-            .collect();
-        ids.join(", ")
-    };
-    let url = &address.url;
+fn chosen<'a>(update: &'a Update, address: &Address) -> Result<&'a Device, ConnectError> {
+    let devices = update.devices().iter();
+    let ids = devices.map(|device| device.device_id.clone()).collect();
+    let refused = |refusal| ConnectError::new(&address.url, refusal);
     match (&address.device, update.devices()) {
-        (_, []) => Err(UserError::failure(format!(
-            "the Inverse service at {url} sees no Inverse3"
-        ))
-        .help("plug it in and switch it on, and look whether Haply Hub sees it")),
-        (Some(id), _) => update.device(id).ok_or_else(|| {
-            UserError::failure(format!(
-                "the Inverse service at {url} sees no Inverse3 {id}"
-            ))
-            .help(format!("switch it on; there are: {}", ids()))
-        }),
+        (_, []) => Err(refused(Refusal::Absent)),
+        (Some(id), _) => {
+            let device = update.device(id);
+            device.ok_or_else(|| refused(Refusal::NoDevice(id.clone(), ids)))
+        }
         (None, [device]) => Ok(device),
-        (None, _) => Err(UserError::failure(format!(
-            "the Inverse service at {url} sees several Inverse3s: {}",
-            ids()
-        ))
-        .help(format!("name one as the device's `address`: {url}#id"))),
+        (None, _) => Err(refused(Refusal::Several(ids))),
     }
 }
 

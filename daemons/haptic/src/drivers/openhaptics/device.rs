@@ -24,7 +24,8 @@ const MOST_UNREAD: u32 = 1000;
 /// longer one for a stand-still. A force dropped and given again would be a blow, s.
 const HELD_S: f64 = 0.005;
 
-const UNREADABLE: DeviceError = DeviceError {
+/// The device reports no place.
+pub const UNREADABLE: DeviceError = DeviceError {
     what: "the haptic device says no place that it could be at",
     code: 0,
     help: "calibrate it by the vendor's setup program",

@@ -59,15 +59,19 @@ const N_PER_MS: f64 = 1000.0;
 /// Unit of the library's stiffness, N/m.
 const STIFFEST_N_M: f64 = 1000.0;
 
+/// A process has one device at a time.
+#[must_use]
+pub fn already_open() -> UserError {
+    UserError::usage("this process already has a device of OpenHaptics")
+        .help("give each haptic device its own daemon")
+}
+
 /// Opens the device that a section of `rig.toml` asks for.
 ///
 /// # Errors
 /// A [`UserError`]: no library, no such device, or another program has it. Nothing is left behind.
 pub fn open(section: &DeviceSection) -> Result<Opened, UserError> {
-    let claim = Claim::take().ok_or_else(|| {
-        UserError::usage("this process already has a device of OpenHaptics")
-            .help("give each haptic device its own daemon")
-    })?;
+    let claim = Claim::take().ok_or_else(already_open)?;
     let library = Library::find(section.library.as_deref())?;
     let handle = initiate(library, section.address.as_deref())?;
     let session = Session::new(library, handle, claim);

@@ -30,7 +30,8 @@ const STALLED: Duration = Duration::from_secs(2);
 /// Time before a notice is repeated.
 const TOLD: Duration = Duration::from_secs(10);
 
-const DEAD: DeviceError = DeviceError {
+/// The scheduler never called, or stopped.
+pub const DEAD: DeviceError = DeviceError {
     what: "the vendor's scheduler does not call the servo",
     code: 0,
     help: "plug the haptic device in again, and run the vendor's diagnostic program if it comes again",

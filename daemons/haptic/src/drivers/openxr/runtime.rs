@@ -36,7 +36,7 @@ pub const LOST: DeviceError = DeviceError {
 };
 
 /// The runtime does not do what it is asked.
-const REFUSED: DeviceError = DeviceError {
+pub const REFUSED: DeviceError = DeviceError {
     what: "the OpenXR runtime refused a call",
     code: 0,
     help: "see the runtime's own log",
@@ -292,7 +292,8 @@ fn instance(entry: &xr::Entry) -> Result<xr::Instance, UserError> {
 }
 
 /// The error of a session that does not begin, with advice.
-fn refused(error: xr::sys::Result) -> UserError {
+#[must_use]
+pub fn refused(error: xr::sys::Result) -> UserError {
     use xr::sys::Result as Code;
     let (what, help) = match error {
         Code::ERROR_RUNTIME_UNAVAILABLE | Code::ERROR_RUNTIME_FAILURE => (

@@ -25,33 +25,48 @@ pub fn ports() -> Result<Vec<SerialPortInfo>, UserError> {
     })
 }
 
-/// The one of `ports` that a stylus is at.
-///
-/// # Errors
-/// A [`UserError`] where none or several may be.
-pub fn only(ports: &[SerialPortInfo]) -> Result<&str, UserError> {
-    let mut fits = ports.iter().filter(|port| fits(port));
-    match (fits.next(), fits.next()) {
-        (Some(port), None) => Ok(&port.port_name),
-        (None, _) => Err(
-            UserError::failure("no WoodenHaptics or Polhem stylus is plugged in").help(
-                if ports.is_empty() {
+/// The reason why no port is known to be a stylus'.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FindError {
+    /// None of these ports is.
+    Absent(Vec<SerialPortInfo>),
+    /// Each of these may be.
+    Several(Vec<SerialPortInfo>),
+}
+
+impl From<FindError> for UserError {
+    fn from(error: FindError) -> Self {
+        match error {
+            FindError::Absent(ports) => {
+                let help = if ports.is_empty() {
                     "plug it in; this machine has no serial port now".to_owned()
                 } else {
                     format!(
                         "plug it in, or name its port as the device's `address`; there are: {}",
-                        listed(ports.iter())
+                        listed(&ports)
                     )
-                },
-            ),
-        ),
-        (Some(_), Some(_)) => {
-            let names = listed(ports.iter().filter(|port| self::fits(port)));
-            Err(UserError::failure(format!(
-                "several ports may be a WoodenHaptics or Polhem stylus: {names}"
+                };
+                Self::failure("no WoodenHaptics or Polhem stylus is plugged in").help(help)
+            }
+            FindError::Several(ports) => Self::failure(format!(
+                "several ports may be a WoodenHaptics or Polhem stylus: {}",
+                listed(&ports)
             ))
-            .help("name one as the device's `address`"))
+            .help("name one as the device's `address`"),
         }
+    }
+}
+
+/// The one of `ports` that a stylus is at.
+///
+/// # Errors
+/// [`FindError`].
+pub fn only(ports: &[SerialPortInfo]) -> Result<&str, FindError> {
+    let fits: Vec<&SerialPortInfo> = ports.iter().filter(|port| fits(port)).collect();
+    match fits[..] {
+        [port] => Ok(&port.port_name),
+        [] => Err(FindError::Absent(ports.to_vec())),
+        _ => Err(FindError::Several(fits.into_iter().cloned().collect())),
     }
 }
 
@@ -65,8 +80,9 @@ pub fn is_board(vendor: u16, product: u16) -> bool {
     vendor == VENDOR && PRODUCTS.contains(&product)
 }
 
-fn listed<'a>(ports: impl Iterator<Item = &'a SerialPortInfo>) -> String {
+fn listed(ports: &[SerialPortInfo]) -> String {
     let words: Vec<String> = ports
+        .iter()
         .map(|port| match &port.port_type {
             SerialPortType::UsbPort(usb) => {
                 let product = usb.product.as_deref().unwrap_or("USB");
@@ -110,12 +126,9 @@ mod tests {
         let ports = [other, modem, programmer, teensy];
         assert_eq!(only(&ports).ok(), Some("/dev/ttyACM2"));
 
-        let fault = only(&ports[..3]).expect_err("none is a Teensy");
-        assert!(fault.what.starts_with("no WoodenHaptics"), "{}", fault.what);
-        let help = fault.help.expect("what there is");
-        assert!(help.contains("/dev/ttyS0, /dev/ttyACM0 (USB Serial 2341:0483)"));
-        let fault = only(&[]).expect_err("no port");
-        assert!(fault.help.expect("help").contains("no serial port"));
+        for others in [&ports[..3], &[]] {
+            assert_eq!(only(others), Err(FindError::Absent(others.to_vec())));
+        }
     }
 
     #[test]
@@ -124,8 +137,7 @@ mod tests {
             usb("/dev/ttyACM0", 0x16C0, 0x0483),
             usb("/dev/ttyACM1", 0x16C0, 0x048F),
         ];
-        let fault = only(&ports).expect_err("two");
-        assert!(fault.what.contains("/dev/ttyACM0") && fault.what.contains("/dev/ttyACM1"));
+        assert_eq!(only(&ports), Err(FindError::Several(ports.to_vec())));
     }
 
     #[test]

@@ -72,7 +72,9 @@ pub fn open(device: &DeviceSection) -> Result<Opened, UserError> {
     })
 }
 
-fn refused(path: &str, error: HandshakeError) -> UserError {
+/// The error of a port whose device cannot be used.
+#[must_use]
+pub fn refused(path: &str, error: HandshakeError) -> UserError {
     match error {
         HandshakeError::Silent => UserError::failure(format!("nothing answers at {path}")).help(
             "switch the stylus on; if this is another device's port, name the stylus' own as the \

@@ -78,17 +78,10 @@ fn a_window_that_does_not_fit_is_refused() {
     });
     let grid = too_large.next().expect("a window that is too large");
     let refusal = GpuFlow::new(gpu.clone(), &grid, Effort::default()).err();
-    let Some(GpuError::Window { needs, .. }) = refusal.clone() else {
+    let Some(GpuError::Window { needs, .. }) = refusal else {
         panic!("{refusal:?}");
     };
     assert!(needs > most);
-    let text = refusal
-        .map(|refusal| refusal.to_string())
-        .unwrap_or_default();
-    assert!(
-        text.contains("MiB") && text.contains("smaller window"),
-        "{text}"
-    );
     // The device is still there for one that fits.
     let grid = Grid::walled([8; 3]);
     let mut flow = GpuFlow::new(gpu, &grid, Effort::default()).expect("made");

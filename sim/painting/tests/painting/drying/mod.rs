@@ -288,7 +288,12 @@ fn an_opacity_is_not_lost_and_layers_are_named() {
     assert!(
         unknown.to_string().contains("'sky'") && unknown.advice().to_string().contains("2 (high)")
     );
+    sequencer.edit(wet(1, None)).expect("no veil");
+}
 
+#[test]
+fn layers_get_names() {
+    let (mut sequencer, _) = two_layers();
     let names = |sequencer: &Sequencer| -> Vec<String> {
         let layers = &sequencer.painting().scene().layers;
         layers.iter().map(|layer| layer.name.clone()).collect()
