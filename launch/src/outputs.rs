@@ -119,12 +119,11 @@ impl Relayed {
     /// A [`UserError`] where the path cannot be told as text, or the current folder is gone.
     pub fn new(path: &Path, kind: Kind) -> Result<Self, UserError> {
         let to = PathBuf::from(whole_path(path)?.as_str());
-        let written = match gives_way(&to, kind) {
-            true => to.clone(),
-            false => {
-                let name = to.file_name().unwrap_or_default().to_string_lossy();
-                to.with_file_name(format!("{}.new.{name}", std::process::id()))
-            }
+        let written = if gives_way(&to, kind) {
+            to.clone()
+        } else {
+            let name = to.file_name().unwrap_or_default().to_string_lossy();
+            to.with_file_name(format!("{}.new.{name}", std::process::id()))
         };
         Ok(Self { to, written })
     }

@@ -91,11 +91,12 @@ pub fn brush_file(section: &BrushSection) -> Result<BrushFile, UserError> {
 /// Error of a brush file, without the advice for settings of a rig, which does not apply.
 #[must_use]
 pub fn of_a_brush(fault: UserError) -> UserError {
-    match fault.advice == Some(Advice::DefaultSettings) {
-        true => fault.help(
+    if fault.advice == Some(Advice::DefaultSettings) {
+        fault.help(
             "docs/brushes.md says what a brush file holds; `maulstick brush list` shows the library",
-        ),
-        false => fault,
+        )
+    } else {
+        fault
     }
 }
 
@@ -191,9 +192,10 @@ impl KitOptions {
         embedded: &[String],
         library: &PaintLibrary,
     ) -> Result<Vec<Mixture>, UserError> {
-        let (loads, whose) = match self.load.is_empty() {
-            false => (self.load.as_slice(), "--load"),
-            true => (embedded, "the take's load"),
+        let (loads, whose) = if self.load.is_empty() {
+            (embedded, "the take's load")
+        } else {
+            (self.load.as_slice(), "--load")
         };
         let mixture = |text: &String| {
             mixture_of(text, library).map_err(|fault| fault.at(format!("{whose} {text:?}")))

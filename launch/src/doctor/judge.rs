@@ -110,9 +110,10 @@ fn graphics(graphics: &Graphics) -> Finding {
     match &graphics.paint {
         Ok(paint) => Finding::ok(
             CHECK,
-            match *paint == adapter.name {
-                true => format!("{name} draws the window and computes the paint"),
-                false => format!("{name} draws the window, {paint} computes the paint"),
+            if *paint == adapter.name {
+                format!("{name} draws the window and computes the paint")
+            } else {
+                format!("{name} draws the window, {paint} computes the paint")
             },
         ),
         Err(error) => Finding::warning(
@@ -230,17 +231,18 @@ fn real_time(rights: &RealTime) -> Finding {
         );
     };
     let what = format!("the servo of force feedback may not go first, and stutters ({refusal})");
-    match rights.limit >= u64::from(PRIORITY) {
-        true => Finding::warning(
+    if rights.limit >= u64::from(PRIORITY) {
+        Finding::warning(
             CHECK,
             format!("{what}, though the limit of rtprio is {}", rights.limit),
             "let this container set priorities: docker run --cap-add SYS_NICE",
-        ),
-        false => Finding::warning(
+        )
+    } else {
+        Finding::warning(
             CHECK,
             what,
             format!("echo \"$USER - rtprio 99\" | sudo tee -a {LIMITS}, then log in again"),
-        ),
+        )
     }
 }
 
@@ -273,11 +275,10 @@ fn clock(clock: &Clock) -> Finding {
         "time is read from {current}, which is slow: all streams and the servo wait for it"
     );
     let has_tsc = available.split_whitespace().any(|name| name == "tsc");
-    let mend = match has_tsc {
-        true => format!("echo tsc | sudo tee {CLOCK}/current_clocksource"),
-        false => {
-            "see why the kernel gave up the processor's own clock: sudo dmesg | grep -i tsc".into()
-        }
+    let mend = if has_tsc {
+        format!("echo tsc | sudo tee {CLOCK}/current_clocksource")
+    } else {
+        "see why the kernel gave up the processor's own clock: sudo dmesg | grep -i tsc".into()
     };
     Finding::warning(CHECK, what, mend)
 }

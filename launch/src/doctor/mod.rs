@@ -30,9 +30,10 @@ pub struct DoctorOptions {
 /// A [`UserError`] where it cannot be printed.
 pub fn run(options: &DoctorOptions) -> Result<i32, UserError> {
     let findings = judge(&Facts::of_this_machine());
-    match options.json {
-        true => print_json(&json!(findings))?,
-        false => print_text(&in_words(&findings))?,
+    if options.json {
+        print_json(&json!(findings))?
+    } else {
+        print_text(&in_words(&findings))?
     }
     let is_wrong = findings.iter().any(|finding| finding.state == State::Wrong);
     Ok(i32::from(is_wrong))

@@ -33,9 +33,10 @@ pub(super) fn run(options: &HidOptions) -> Result<i32, UserError> {
     // Beside the device's own daemon a recorder is a device by itself: two of them move no brush twice,
     // for one alone has it at a time.
     let beside = options.record.is_some() && options.node.node.is_none();
-    let name = match beside {
-        true => format!("{}{RECORDER}", options.device),
-        false => options.device.clone(),
+    let name = if beside {
+        format!("{}{RECORDER}", options.device)
+    } else {
+        options.device.clone()
     };
     // A recording gets its name at the end, so the process is asked to stop, not killed.
     let mut member = options.node.join(&name, Signal::SIGTERM)?;

@@ -86,9 +86,10 @@ pub(super) fn file_of(step: &Step<'_>) -> Result<Option<UsedFile>, UserError> {
 }
 
 pub(super) fn switched_on(step: &Step<'_>) -> Result<(), UserError> {
-    match step.due(step.keys.switch(step.kind.form.key)?)? {
-        true => Ok(()),
-        false => Err(UserError::usage("a step that is 'false' does nothing").help("leave it out")),
+    if step.due(step.keys.switch(step.kind.form.key)?)? {
+        Ok(())
+    } else {
+        Err(UserError::usage("a step that is 'false' does nothing").help("leave it out"))
     }
 }
 

@@ -134,9 +134,10 @@ fn described(value: &DeValue<'_>) -> String {
 fn short(message: &str) -> String {
     let line = message.lines().next().unwrap_or_default();
     let cut: String = line.chars().take(MESSAGE).collect();
-    match cut.len() < line.len() {
-        true => format!("{cut}…"),
-        false => cut,
+    if cut.len() < line.len() {
+        format!("{cut}…")
+    } else {
+        cut
     }
 }
 
@@ -273,9 +274,10 @@ impl<'a> Entries<'a> {
 
     /// A name, or the path of a file beside the script.
     pub(super) fn beside(&self, name: &str) -> String {
-        match is_path(name) {
-            true => self.source.folder.join(name).display().to_string(),
-            false => name.to_owned(),
+        if is_path(name) {
+            self.source.folder.join(name).display().to_string()
+        } else {
+            name.to_owned()
         }
     }
 

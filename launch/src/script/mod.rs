@@ -110,9 +110,10 @@ impl Script {
     pub fn read(path: &Path, library: &PaintLibrary) -> Result<Self, UserError> {
         let text = std::fs::read_to_string(path).map_err(|error| {
             let fault = UserError::reading(path, &error);
-            match ending(path) == "mcap" {
-                true => fault.help("a take is painted without `--script`: `maulstick render TAKE`"),
-                false => fault,
+            if ending(path) == "mcap" {
+                fault.help("a take is painted without `--script`: `maulstick render TAKE`")
+            } else {
+                fault
             }
         })?;
         let folder = path.parent().unwrap_or(Path::new(""));

@@ -184,9 +184,10 @@ impl<'a> Step<'a> {
 
 impl Kind {
     fn takes(&self) -> String {
-        match self.form.with.is_empty() {
-            true => format!("'{}' takes no other key", self.form.key),
-            false => format!("'{}' takes: {}", self.form.key, self.form.with.join(", ")),
+        if self.form.with.is_empty() {
+            format!("'{}' takes no other key", self.form.key)
+        } else {
+            format!("'{}' takes: {}", self.form.key, self.form.with.join(", "))
         }
     }
 }

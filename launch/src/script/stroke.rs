@@ -106,9 +106,10 @@ impl Stroke {
     #[must_use]
     pub fn seconds(&self) -> f64 {
         let way = self.curve().1.last().copied().unwrap_or_default();
-        match way > 0.0 {
-            true => way / self.speed_mm_s,
-            false => DAB_S,
+        if way > 0.0 {
+            way / self.speed_mm_s
+        } else {
+            DAB_S
         }
     }
 
@@ -136,13 +137,15 @@ impl Stroke {
             let point = at(way);
             let (behind, ahead) = (at(way - LOOK_MM), at(way + LOOK_MM));
             // A dab goes upward.
-            let heading = match whole > 0.0 {
-                true => atan2(ahead[1] - behind[1], ahead[0] - behind[0]),
-                false => 0.5 * PI,
+            let heading = if whole > 0.0 {
+                atan2(ahead[1] - behind[1], ahead[0] - behind[0])
+            } else {
+                0.5 * PI
             };
-            let swell = match whole > 0.0 {
-                true => 1.0,
-                false => 1.0 - powf(2.0 * share - 1.0, 2.0),
+            let swell = if whole > 0.0 {
+                1.0
+            } else {
+                1.0 - powf(2.0 * share - 1.0, 2.0)
             };
             samples.push(self.sample(point, heading, swell * point[2], size_mm));
             if i == count {

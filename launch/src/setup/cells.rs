@@ -39,13 +39,14 @@ pub fn parse_cell_mm(text: &str) -> Result<f64, String> {
         .trim()
         .parse()
         .map_err(|_| format!("'{text}' is not a number of mm such as {PICTURE_CELL_MM}"))?;
-    match CELLS_MM.contains(&side) {
-        true => Ok(side),
-        false => Err(format!(
+    if CELLS_MM.contains(&side) {
+        Ok(side)
+    } else {
+        Err(format!(
             "cells of {text} mm; choose {} to {} mm, such as {PICTURE_CELL_MM}",
             CELLS_MM.start(),
             CELLS_MM.end()
-        )),
+        ))
     }
 }
 
@@ -93,9 +94,10 @@ pub enum Slowness {
 
 impl From<bool> for Slowness {
     fn from(accepted: bool) -> Self {
-        match accepted {
-            true => Self::Accepted,
-            false => Self::Unknown,
+        if accepted {
+            Self::Accepted
+        } else {
+            Self::Unknown
         }
     }
 }

@@ -121,19 +121,18 @@ pub enum Presence {
 /// # Errors
 /// A [`UserError`] where it cannot, or where an option is given that only a new painting takes.
 pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, UserError> {
-    match glance(path).map_err(|error| wrong(path, &error))? {
-        false => {
-            check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;
-            Ok(Presence::New)
-        }
-        true => match options.for_a_new_one() {
+    if glance(path).map_err(|error| wrong(path, &error))? {
+        match options.for_a_new_one() {
             Some(option) => Err(UserError::usage(format!("{option} is for a new painting"))
                 .at(path.display().to_string())
                 .help(
                     "this one has its paint model, size, cells, paints, ground and light; `maulstick canvas light` and `canvas ground` change these",
                 )),
             None => Ok(Presence::There),
-        },
+        }
+    } else {
+        check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;
+        Ok(Presence::New)
     }
 }
 
@@ -142,13 +141,15 @@ pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, User
 /// # Errors
 /// A [`UserError`] if it does not exist.
 pub fn there(path: &Path) -> Result<(), UserError> {
-    let found = match path.exists() {
-        true => glance(path),
-        false => Err(DocumentError::Missing),
+    let found = if path.exists() {
+        glance(path)
+    } else {
+        Err(DocumentError::Missing)
     };
-    match found.map_err(|error| wrong(path, &error))? {
-        true => Ok(()),
-        false => Err(wrong(path, &DocumentError::NoPainting)),
+    if found.map_err(|error| wrong(path, &error))? {
+        Ok(())
+    } else {
+        Err(wrong(path, &DocumentError::NoPainting))
     }
 }
 

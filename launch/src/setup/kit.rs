@@ -51,9 +51,10 @@ pub fn kit_of(
     }
     if is_path(&config.canvas.ground) {
         let file = Path::new(&config.canvas.ground);
-        let extension = match PictureKind::is_named(file) {
-            true => file.extension().unwrap_or_default().to_ascii_lowercase(),
-            false => "csv".into(),
+        let extension = if PictureKind::is_named(file) {
+            file.extension().unwrap_or_default().to_ascii_lowercase()
+        } else {
+            "csv".into()
         };
         settings.canvas.ground = kit.add(read(file)?, &extension.to_string_lossy());
     }

@@ -18,9 +18,10 @@ pub fn changed(change: &LightChange, light: &Light) -> Result<Light, UserError> 
         Some(name) => {
             let found = illuminant(name)?;
             let known = Illuminant::named(&found.name);
-            let power = match known.as_ref() == Some(&found) {
-                true => Vec::new(),
-                false => found.power.0.to_vec(),
+            let power = if known.as_ref() == Some(&found) {
+                Vec::new()
+            } else {
+                found.power.0.to_vec()
             };
             Some((found.name, power))
         }

@@ -70,9 +70,10 @@ pub fn node(
 #[must_use]
 pub fn device(config: &RigConfig, device: &DeviceSection) -> NodeSpec {
     let mut args = vec!["--device".to_owned(), device.name.clone()];
-    let program = match device.is_hid() {
-        true => Program::Hid,
-        false => Program::Haptic,
+    let program = if device.is_hid() {
+        Program::Hid
+    } else {
+        Program::Haptic
     };
     if program == Program::Haptic {
         for library in &config.allowed_libraries {

@@ -5,10 +5,9 @@ use maulstick_optics::colour::apply;
 use maulstick_optics::{Illuminant, Observer, RuleKind, Spectrum, StudioSettings};
 use maulstick_types::scene::Light;
 
-/// Optical settings of the light; its direction and strength are not among them.
+/// Optical settings of the light, without its direction and strength.
 ///
-/// # Errors
-/// [`EditError`] for a light out of bounds, or a name of no illuminant.
+/// # Errors [`EditError`] for a light out of bounds, or an unknown illuminant.
 pub fn studio_settings(light: &Light) -> Result<StudioSettings, EditError> {
     light.check()?;
     let spectrum: Result<[f64; maulstick_optics::spectrum::SAMPLES], _> =
@@ -40,8 +39,7 @@ pub fn studio_settings(light: &Light) -> Result<StudioSettings, EditError> {
 
 /// One of the CIE's illuminants.
 ///
-/// # Errors
-/// [`EditError`] with the nearest name and all of them.
+/// # Errors [`EditError`] with the nearest name and all of them.
 pub fn illuminant_named(name: &str) -> Result<Illuminant, EditError> {
     Illuminant::named(name).ok_or_else(|| EditError::NoIlluminant {
         name: name.to_owned(),
@@ -49,7 +47,7 @@ pub fn illuminant_named(name: &str) -> Result<Illuminant, EditError> {
     })
 }
 
-/// The light's own colour in linear sRGB: white to an eye that is adapted to it.
+/// The light's own colour in linear sRGB, which an adapted eye sees as white.
 #[must_use]
 pub fn cast(light: &Light) -> [f64; 3] {
     if light.adapted {
@@ -60,7 +58,7 @@ pub fn cast(light: &Light) -> [f64; 3] {
     })
 }
 
-/// True if two lights differ in their optical settings, so that all colours are to be computed anew.
+/// True if two lights differ in their optical settings, which requires all colours to be recomputed.
 #[must_use]
 pub fn changes_colour(one: &Light, other: &Light) -> bool {
     let spectral = |light: &Light| {

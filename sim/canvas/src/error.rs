@@ -1,5 +1,5 @@
-//! Errors of edits. They become words where a person reads them: a reply has the sentence and the advice, and each front
-//! end has its own words for that.
+//! Errors of edits, as data until a person reads them: a reply has the sentence and the advice, and each front end its
+//! own words for the advice.
 
 use maulstick_types::brush::BRUSHES_MOST;
 use maulstick_types::command::Outcome;
@@ -13,13 +13,13 @@ use maulstick_types::{EditFault, MixtureError, Region};
 
 use crate::quantum::SLOTS;
 
-/// An edit that was refused: the painting is as it was.
+/// Error of an edit; the painting is unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EditError {
     /// An unknown paint.
     #[error("there is no paint called '{name}'{}", .nearest.as_ref().map_or(String::new(), |nearest| format!("; did you mean '{nearest}'?")))]
     NoPaint {
-        /// Its name.
+        /// Name of the paint.
         name: String,
         /// The nearest name, if one is near.
         nearest: Option<String>,
@@ -27,12 +27,12 @@ pub enum EditError {
     /// An invalid mixture.
     #[error(transparent)]
     Mixture(#[from] MixtureError),
-    /// A line of a paint file that cannot be read.
+    /// An unreadable line of a paint file.
     #[error("line {line}: {what}")]
     PaintFile {
         /// The line, from 1.
         line: usize,
-        /// What is wrong with it.
+        /// The fault.
         what: String,
     },
     /// One paint more than a painting can have.
@@ -47,9 +47,9 @@ pub enum EditError {
     /// A brush that the rig does not have.
     #[error("there is no brush called '{name}' in this rig")]
     NoBrush {
-        /// Its name.
+        /// Requested name.
         name: String,
-        /// Those that there are.
+        /// Known names.
         known: Vec<String>,
     },
     /// A brush without paint.
@@ -58,10 +58,10 @@ pub enum EditError {
     /// A place without paint.
     #[error("no paint lies {:.1} mm from the left edge and {:.1} mm from the lower edge", at_m[0] * 1e3, at_m[1] * 1e3)]
     NoPaintThere {
-        /// The place, m.
+        /// Place on the surface, m.
         at_m: [f64; 2],
     },
-    /// A state with numbers that no brush has.
+    /// A brush state with a fault, such as NaN.
     #[error("brush '{brush}' sent an invalid state: {fault}")]
     State {
         /// Name of the brush.
@@ -69,7 +69,7 @@ pub enum EditError {
         /// The fault.
         fault: &'static str,
     },
-    /// A state of another brush file.
+    /// A state of another brush file; the name of the brush.
     #[error("brush '{0}' sent a state of another brush file")]
     Unfit(String),
     /// An unknown surface.
@@ -78,18 +78,18 @@ pub enum EditError {
     /// A value out of its range.
     #[error(transparent)]
     Value(#[from] ValueError),
-    /// An edit that this program does not know, or a field that it does not have.
+    /// An edit unknown to this program, or one with an unknown field.
     #[error(transparent)]
     Edit(#[from] EditFault),
-    /// What one kind of edit alone refuses, in its own words.
+    /// A refusal of a single kind of edit.
     #[error("{what}")]
     Own {
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
-        /// What to do.
+        /// Remedy.
         help: &'static str,
     },
-    /// A region without a cell of its surface.
+    /// A region that contains no cell of its surface.
     #[error("the region {region} holds no cell of the surface")]
     NoCell {
         /// The region.
@@ -97,21 +97,21 @@ pub enum EditError {
         /// Width and height of the surface, mm.
         surface_mm: [f64; 2],
     },
-    /// Nothing to dry.
+    /// Nothing wet to dry, in this region or at all.
     #[error("nothing is wet{}", within(.0.as_ref()))]
     NothingWet(Option<Region>),
-    /// Nothing to make wet again.
+    /// Nothing dry to rewet, in this region or at all.
     #[error("nothing has dried{}", within(.0.as_ref()))]
     NothingDry(Option<Region>),
-    /// No room for paint that is to be wet again.
+    /// No room for rewetted paint, in this region or at all.
     #[error("no cell{} has room for more wet paint", within(.0.as_ref()))]
     NoRoom(Option<Region>),
-    /// A layer whose opacity wet paint cannot have.
+    /// A layer with an opacity, which wet paint cannot have.
     #[error("layer {number} ({name}) has an opacity other than 1, which wet paint cannot have")]
     Veiled {
         /// Number of the layer.
         number: u32,
-        /// Its name.
+        /// Name of the brush.
         name: String,
     },
     /// A drying of this surface is in progress.
@@ -123,34 +123,34 @@ pub enum EditError {
     /// An unknown dry layer.
     #[error("there is no dry layer {which}")]
     NoLayer {
-        /// How it was called.
+        /// Requested number or name.
         which: String,
-        /// Numbers and names of those that there are.
+        /// Numbers and names of the existing layers.
         known: Vec<(u32, String)>,
     },
-    /// Nothing to undo, of a brush or at all.
+    /// Nothing to undo, of this brush or at all.
     #[error("there is nothing{} to undo", .0.as_ref().map_or(String::new(), |brush| format!(" by brush '{brush}'")))]
     NothingToUndo(Option<String>),
     /// Nothing to redo.
     #[error("there is nothing to redo")]
     NothingToRedo,
-    /// A step that is no longer apart.
+    /// A step that is no longer separate.
     #[error("this step is no longer in the history")]
     NoStep,
     /// A step under a later one.
     #[error("'{what}' is covered by a later step{}", .over.as_ref().map_or(String::new(), |over| format!(", '{over}'")))]
     Covered {
-        /// The step.
+        /// Name of the step.
         what: StepName,
-        /// The later one.
+        /// Name of the later step.
         over: Option<StepName>,
     },
     /// An unknown version.
     #[error("there is no version called '{name}'")]
     NoVersion {
-        /// Its name.
+        /// Requested name.
         name: String,
-        /// Those that there are.
+        /// Known names.
         known: Vec<String>,
     },
     /// A version's name that is taken.
@@ -170,50 +170,50 @@ pub enum EditError {
     /// A light out of range.
     #[error(transparent)]
     Light(#[from] LightError),
-    /// A spectrum that does not reach the eye.
+    /// A spectrum that is invisible.
     #[error("{0}")]
     Dark(String),
     /// An unknown illuminant.
     #[error("there is no illuminant called '{name}'")]
     NoIlluminant {
-        /// Its name.
+        /// Name of the layer.
         name: String,
-        /// Those that there are.
+        /// Known names.
         known: Vec<&'static str>,
     },
     /// An unknown ground.
     #[error("there is no ground called '{name}'")]
     NoGround {
-        /// Its name.
+        /// Requested name.
         name: String,
-        /// Those that there are.
+        /// Known names.
         known: Vec<&'static str>,
     },
     /// An unknown paint model.
     #[error("there is no paint model called '{name}'")]
     NoModel {
-        /// Its name.
+        /// Requested name.
         name: String,
-        /// Those that there are.
+        /// Known names.
         known: Vec<&'static str>,
     },
-    /// A surface that has this paint model already.
+    /// A surface that already has this paint model.
     #[error("this surface has the paint model '{0}' already")]
     SameModel(&'static str),
     /// An unknown tooth.
     #[error("there is no tooth called '{name}'")]
     NoTooth {
-        /// Its name.
+        /// Requested name.
         name: String,
-        /// Those that there are.
+        /// Known names.
         known: Vec<&'static str>,
     },
-    /// The name of a pictured tooth that cannot be read.
+    /// An unreadable name of a pictured tooth.
     #[error("'{name}' does not name a tooth: {fault}")]
     ToothName {
-        /// The name.
+        /// Requested name.
         name: String,
-        /// What is wrong with it.
+        /// The fault.
         fault: &'static str,
     },
     /// A text that is not a table of reflectances.
@@ -222,16 +222,16 @@ pub enum EditError {
     /// Bytes that are not a picture, or a picture of another kind or size.
     #[error("{0}")]
     Picture(String),
-    /// A picture that the painting does not hold.
+    /// A picture that the painting lacks, by its hash.
     #[error("this painting has no picture with the hash {0}")]
     NoPicture(String),
     /// A text that is not a hash.
     #[error("'{0}' is not the hash of a picture")]
     NoHash(String),
-    /// A picture of heights where one of colours is due.
+    /// A picture of heights instead of colours.
     #[error("a picture of heights cannot be a ground")]
     Heights,
-    /// A picture of colours where one of heights is due.
+    /// A picture of colours instead of heights.
     #[error("a picture of colours cannot be a tooth")]
     Colours,
     /// A surface of too few or too many cells.
@@ -240,7 +240,7 @@ pub enum EditError {
     /// Cells that are too small or too large, mm.
     #[error("cells cannot be {0} mm wide")]
     CellSize(f64),
-    /// A document whose parts do not fit together.
+    /// A document with inconsistent parts.
     #[error("{0}")]
     Damaged(String),
 }
@@ -250,7 +250,7 @@ fn within(region: Option<&Region>) -> String {
 }
 
 impl EditError {
-    /// What to do about it.
+    /// Remedy, for a person.
     #[must_use]
     pub fn advice(&self) -> Advice {
         let say = |help: &str| Advice::say(help);

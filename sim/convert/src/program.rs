@@ -1,19 +1,19 @@
-//! The quadratic programme of a Gauss-Newton step over shares.
+//! The quadratic program of a Gauss-Newton step over shares.
 //!
-//! Minimise ½|e + Σ jₛ·(zₛ − yₛ)|² + ½λ|z − o|² + Σ cₛ·zₛ over z ≥ 0, Σz = 1, by a primal active-set method (Nocedal and
-//! Wright 2006, § 16.5). Where a set of shares is free, λ(zₛ − oₛ) = −(jₛ·e' + cₛ + ν) with the residual e' at the minimum
-//! and the multiplier ν of the sum, so that four unknowns are to be solved for, however many paints there are.
+//! Minimise ½|e + Σ jₛ·(zₛ − yₛ)|² + ½λ|z − o|² + Σ cₛ·zₛ over z ≥ 0, Σz = 1, by a primal active-set method (Nocedal
+//! and Wright 2006, § 16.5). Where a set of shares is free, λ(zₛ − oₛ) = −(jₛ·e' + cₛ + ν) with the residual e' at the
+//! minimum and the multiplier ν of the sum, so there are four unknowns for any number of paints.
 
 /// Weight λ of the distance from the own shares.
 pub(crate) const NEAR: f64 = 0.02;
-/// Changes of the free set by paint, at most.
+/// Greatest number of changes of the free set per paint.
 const CHANGES: usize = 4;
-/// Slope of what is minimised along a share below which it stays 0.
+/// Slope of the objective along a share below which it stays 0.
 const LEAST: f64 = 1e-6;
 
-/// What a step is to minimise.
+/// Objective of a step.
 pub(crate) struct Program<'a> {
-    /// Weighted difference from the colour wanted, e.
+    /// Weighted difference from the target colour, e.
     pub(crate) residual: [f64; 3],
     /// Its slopes by the shares, j.
     pub(crate) slopes: &'a [[f64; 3]],
@@ -23,7 +23,7 @@ pub(crate) struct Program<'a> {
     pub(crate) costs: &'a [f64],
 }
 
-/// Working memory of a programme.
+/// Buffers of a program.
 #[derive(Debug, Default)]
 pub(crate) struct Active {
     is_free: Vec<bool>,
@@ -35,7 +35,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl Program<'_> {
-    /// Moves shares from where they are, y, to the minimum.
+    /// Moves shares from their current values, y, to the minimum.
     pub(crate) fn minimise(&self, shares: &mut [f64], active: &mut Active) {
         let mut bare = self.residual;
         for (slope, share) in self.slopes.iter().zip(&*shares) {
@@ -83,7 +83,7 @@ impl Program<'_> {
                 _ => break,
             }
         }
-        // What rounding leaves of the sum.
+        // Rounding error of the sum.
         let sum: f64 = shares.iter().map(|share| share.max(0.0)).sum();
         for share in shares {
             *share = share.max(0.0) / sum;
@@ -154,7 +154,7 @@ mod tests {
     }
 
     proptest! {
-        /// Of a convex function over the simplex a point is the minimum where no exchange between two paints gains anything.
+        /// A point minimises a convex function over the simplex where no exchange between two paints gains anything.
         #[test]
         fn no_exchange_from_the_minimum_gains(
             slopes in prop::collection::vec(prop::array::uniform3(-60.0..60.0f64), 5),

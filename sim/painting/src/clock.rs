@@ -88,9 +88,10 @@ impl Clock {
         for drying in &mut self.dryings {
             drying.elapsed = (drying.elapsed + 1).min(drying.ticks);
         }
-        let patience = match in_contact {
-            true => STILL_TICKS,
-            false => LIFTED_TICKS,
+        let patience = if in_contact {
+            STILL_TICKS
+        } else {
+            LIFTED_TICKS
         };
         if self.quiet < patience {
             return Vec::new();

@@ -170,9 +170,10 @@ impl Sequencer {
             });
             self.paint(brush, header, state)
         };
-        match may_paint {
-            true => self.consume(brush, header),
-            false => self.pass(header),
+        if may_paint {
+            self.consume(brush, header)
+        } else {
+            self.pass(header)
         }
         (self.release(), result)
     }

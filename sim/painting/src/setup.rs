@@ -201,9 +201,10 @@ pub(crate) fn check_size(cells: [u32; 2], cell_m: f64) -> Result<(), EditError> 
     if cells.iter().any(|cells| !(1..=65_536).contains(cells)) {
         return Err(EditError::Cells(cells));
     }
-    match CELLS_M.contains(&cell_m) {
-        true => Ok(()),
-        false => Err(EditError::CellSize(cell_m * 1e3)),
+    if CELLS_M.contains(&cell_m) {
+        Ok(())
+    } else {
+        Err(EditError::CellSize(cell_m * 1e3))
     }
 }
 

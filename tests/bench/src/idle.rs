@@ -54,12 +54,11 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let mut others = 0.0;
     let mut window = None;
     for (at, (name, _)) in processes.iter().enumerate() {
-        match name == WINDOW {
-            true => window = Some(share(at)),
-            false => {
-                report.row(&format!("idle.{name}"), share(at), "cores");
-                others += share(at);
-            }
+        if name == WINDOW {
+            window = Some(share(at))
+        } else {
+            report.row(&format!("idle.{name}"), share(at), "cores");
+            others += share(at);
         }
     }
     let window = window.ok_or_else(|| fault("the rig has no window"))?;

@@ -67,9 +67,10 @@ pub(crate) fn run(report: &mut Report, model: &str) -> Result<(), UserError> {
         }
     }
     let name = "recording.025.time";
-    match pairs.is_empty() {
-        true => report.median(name, "s", seconds),
-        false => report.paired(name, "s", "libmypaint, modelling", &pairs),
+    if pairs.is_empty() {
+        report.median(name, "s", seconds)
+    } else {
+        report.paired(name, "s", "libmypaint, modelling", &pairs)
     }
     let ledger = std::fs::read(place.join("l.json")).map_err(fault)?;
     let ledger: serde_json::Value =
@@ -103,8 +104,9 @@ fn painted(place: &Path, take: &Path, (cell_mm, model): (f64, &str)) -> Result<f
     command.args(["--size", &format!("{side}x{side}"), "--model", model]);
     command.args(LOADS.iter().flat_map(|load| ["--load", load]));
     let status = command.current_dir(place).status().map_err(fault)?;
-    match status.success() {
-        true => Ok(start.elapsed().as_secs_f64()),
-        false => Err(UserError::failure("the recording cannot be rendered")),
+    if status.success() {
+        Ok(start.elapsed().as_secs_f64())
+    } else {
+        Err(UserError::failure("the recording cannot be rendered"))
     }
 }

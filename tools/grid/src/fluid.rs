@@ -121,9 +121,10 @@ impl Film {
 
     /// Its velocity a tick later, m/s, under a brush that touches it by a share.
     pub(super) fn follow(&self, carried: DVec3, velocity: DVec3, touch: f64) -> DVec3 {
-        match self.carried_s > 0.0 {
-            true => carried + (velocity - carried) * (touch * DT / self.carried_s),
-            false => carried,
+        if self.carried_s > 0.0 {
+            carried + (velocity - carried) * (touch * DT / self.carried_s)
+        } else {
+            carried
         }
     }
 

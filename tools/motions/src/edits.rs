@@ -189,12 +189,15 @@ impl AboutOptions {
 }
 
 pub(crate) fn cut(options: &CutOptions) -> Result<i32, UserError> {
-    let ns = |name: &str, seconds: f64| match seconds >= 0.0 && seconds.is_finite() {
-        true => Ok((seconds * 1e9).round() as u64),
-        false => Err(
-            UserError::usage(format!("{name} {seconds} is no time of a take"))
-                .help("count seconds from its beginning"),
-        ),
+    let ns = |name: &str, seconds: f64| {
+        if seconds >= 0.0 && seconds.is_finite() {
+            Ok((seconds * 1e9).round() as u64)
+        } else {
+            Err(
+                UserError::usage(format!("{name} {seconds} is no time of a take"))
+                    .help("count seconds from its beginning"),
+            )
+        }
     };
     let part = match options.strokes {
         Some([first, last]) => Part::Strokes(first..=last),

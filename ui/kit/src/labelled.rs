@@ -14,9 +14,10 @@ pub fn named(ui: &mut Ui, name: &str, hover: &str, control: impl Widget) -> Resp
     ui.horizontal(|ui| {
         let label = label(ui, name, hover);
         let shown = ui.add(control).labelled_by(label.id);
-        match hover.is_empty() {
-            true => shown,
-            false => shown.on_hover_text(hover),
+        if hover.is_empty() {
+            shown
+        } else {
+            shown.on_hover_text(hover)
         }
     })
     .inner
@@ -32,9 +33,10 @@ pub fn label(ui: &mut Ui, name: &str, hover: &str) -> Response {
             ui.label(name)
         })
         .inner;
-    match hover.is_empty() {
-        true => shown,
-        false => shown.on_hover_text(hover),
+    if hover.is_empty() {
+        shown
+    } else {
+        shown.on_hover_text(hover)
     }
 }
 

@@ -119,12 +119,11 @@ impl Made {
 
     fn colour(&self, blend: &Blend) -> Color32 {
         let is_clear = blend.k.0.iter().chain(&blend.s.0).all(|v| *v == 0.0);
-        let linear = match is_clear {
-            true => CLEAR,
-            false => {
-                let seen = self.viewing.coat(blend, &Coat::masstone());
-                seen.linear.map(|channel| channel as f32)
-            }
+        let linear = if is_clear {
+            CLEAR
+        } else {
+            let seen = self.viewing.coat(blend, &Coat::masstone());
+            seen.linear.map(|channel| channel as f32)
         };
         self.tint.colour(linear)
     }
@@ -176,9 +175,10 @@ pub fn words(paint: &Paint) -> String {
         percent if percent >= 65.0 => tr!("half opaque ({percent} %)", percent),
         percent => tr!("transparent ({percent} %)", percent),
     };
-    let index = match paint.colour_index.is_empty() {
-        true => tr!("unknown"),
-        false => &paint.colour_index,
+    let index = if paint.colour_index.is_empty() {
+        tr!("unknown")
+    } else {
+        &paint.colour_index
     };
     tr!(
         "{name}\nPigment: {index}\nIn a film of 50 µm it is {cover}.\nMeasured by: {source}",

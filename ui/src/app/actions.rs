@@ -83,9 +83,10 @@ impl App {
     fn load_from(&mut self, context: &Context) {
         let name = self.studio.rig.brush_name();
         // The mouse's newest sample comes back a frame later: it is where its pointer is.
-        let pointer = match self.connection.tracker.is_led_by_mouse(name) {
-            true => self.pointed_at(context),
-            false => None,
+        let pointer = if self.connection.tracker.is_led_by_mouse(name) {
+            self.pointed_at(context)
+        } else {
+            None
         };
         let aim = pointer.or(self.connection.tracker.aim(name).map(|(at, _)| at));
         let under = aim.and_then(|at| {
@@ -118,9 +119,10 @@ impl App {
             return;
         };
         let side = side(&self.studio.preferences);
-        let pose = match is_out(canvas, palette, side) {
-            true => beside(canvas, palette, side),
-            false => over(canvas, palette),
+        let pose = if is_out(canvas, palette, side) {
+            beside(canvas, palette, side)
+        } else {
+            over(canvas, palette)
         };
         if let Ok(edit) = Place::new(PALETTE, pose, palette.zoom) {
             self.studio.requests.send(edit);
@@ -192,9 +194,10 @@ impl App {
             return;
         };
         let aim = self.connection.tracker.aim(self.studio.rig.brush_name());
-        let shown = match is_out(canvas, palette, side(&self.studio.preferences)) {
-            true => Some(Shown::All),
-            false => aim.map(|(at, _)| Shown::Under(at)),
+        let shown = if is_out(canvas, palette, side(&self.studio.preferences)) {
+            Some(Shown::All)
+        } else {
+            aim.map(|(at, _)| Shown::Under(at))
         };
         if let Some(shown) = shown {
             well_labels::draw(painter, view, palette, shown);
@@ -251,9 +254,10 @@ impl App {
             return;
         }
         // One that is out stays where it is.
-        let pose = match rests {
-            true => beside(canvas, palette, side),
-            false => palette.pose.clone(),
+        let pose = if rests {
+            beside(canvas, palette, side)
+        } else {
+            palette.pose.clone()
         };
         let wells = mirrored(&palette.wells, size_m(palette));
         if let (Ok(laid), Ok(wells)) = (
@@ -274,9 +278,10 @@ fn over_panel(context: &Context) -> bool {
 
 /// The side of the palette for the hand that paints.
 fn side(preferences: &Preferences) -> Side {
-    match preferences.window.left_handed {
-        false => Side::Left,
-        true => Side::Right,
+    if preferences.window.left_handed {
+        Side::Right
+    } else {
+        Side::Left
     }
 }
 

@@ -252,9 +252,10 @@ impl Overlay {
             Action::Mirror => {
                 let mirrored = &mut work.preferences.window.mirrored;
                 *mirrored = !*mirrored;
-                let words = match *mirrored {
-                    true => tr!("The view is mirrored; the painting is not"),
-                    false => tr!("The view is no longer mirrored"),
+                let words = if *mirrored {
+                    tr!("The view is mirrored; the painting is not")
+                } else {
+                    tr!("The view is no longer mirrored")
                 };
                 work.notifications.note(words.to_owned());
             }
@@ -334,9 +335,10 @@ fn follow_mouse(act: Action, work: &mut PanelContext<'_>) -> bool {
         Action::Follow => {
             let follows = &mut work.preferences.brushes.mouse.follows;
             *follows = !*follows;
-            let words = match *follows {
-                true => tr!("The mouse's brush follows the stroke"),
-                false => tr!("The mouse's brush keeps its turn"),
+            let words = if *follows {
+                tr!("The mouse's brush follows the stroke")
+            } else {
+                tr!("The mouse's brush keeps its turn")
             };
             work.notifications.note(words.to_owned());
         }

@@ -43,9 +43,10 @@ struct Place<'a> {
 /// Shows the rack over the whole height of the window, at the hand's side; returns what it covers.
 pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) -> Rect {
     let window = context.content_rect();
-    let side = match work.preferences.rack_is_left() {
-        false => Align2::RIGHT_TOP,
-        true => Align2::LEFT_TOP,
+    let side = if work.preferences.rack_is_left() {
+        Align2::LEFT_TOP
+    } else {
+        Align2::RIGHT_TOP
     };
     let shown = Area::new(Id::unique("rack"))
         .order(Order::Middle)
@@ -248,9 +249,10 @@ fn cell(ui: &mut Ui, work: &PanelContext<'_>, place: &Place<'_>) -> Response {
                 .rect_stroke(area, 6.0, stroke, StrokeKind::Inside);
         }
     }
-    match place.file.about.is_empty() {
-        true => response.on_hover_text(words),
-        false => response.on_hover_text(format!("{words}\n{}", known(&place.file.about))),
+    if place.file.about.is_empty() {
+        response.on_hover_text(words)
+    } else {
+        response.on_hover_text(format!("{words}\n{}", known(&place.file.about)))
     }
 }
 

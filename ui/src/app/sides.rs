@@ -14,9 +14,10 @@ pub(crate) const NARROW: f32 = 1000.0;
 /// The side of the rack, as it is seen.
 #[must_use]
 pub(crate) fn rack_side(preferences: &Preferences) -> WindowSide {
-    match preferences.rack_is_left() {
-        false => WindowSide::Right,
-        true => WindowSide::Left,
+    if preferences.rack_is_left() {
+        WindowSide::Left
+    } else {
+        WindowSide::Right
     }
 }
 
@@ -32,9 +33,10 @@ pub(crate) fn column_side(preferences: &Preferences) -> WindowSide {
 /// Width of the column at a side with what surrounds it, points; 0 if it is not there.
 #[must_use]
 pub(crate) fn column_at(preferences: &Preferences, side: WindowSide) -> f32 {
-    match preferences.window.panels && column_side(preferences) == side {
-        true => COLUMN + 6.0 * MARGIN,
-        false => 0.0,
+    if preferences.window.panels && column_side(preferences) == side {
+        COLUMN + 6.0 * MARGIN
+    } else {
+        0.0
     }
 }
 
@@ -47,9 +49,10 @@ pub(crate) fn has_rack(preferences: &Preferences) -> bool {
 /// Width of the rack at a side, points; 0 if it is not there.
 #[must_use]
 pub(crate) fn rack_at(preferences: &Preferences, side: WindowSide) -> f32 {
-    match has_rack(preferences) && rack_side(preferences) == side {
-        true => rack::WIDTH,
-        false => 0.0,
+    if has_rack(preferences) && rack_side(preferences) == side {
+        rack::WIDTH
+    } else {
+        0.0
     }
 }
 

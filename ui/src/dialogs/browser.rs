@@ -147,9 +147,10 @@ impl Browser {
         };
         let begins = |entry: &&Entry| entry.name.to_lowercase().starts_with(&typed);
         let fitting: Vec<Entry> = entries.iter().filter(begins).cloned().collect();
-        match fitting.is_empty() && self.purpose == Purpose::Write {
-            true => entries.to_vec(),
-            false => fitting,
+        if fitting.is_empty() && self.purpose == Purpose::Write {
+            entries.to_vec()
+        } else {
+            fitting
         }
     }
 
@@ -284,9 +285,10 @@ impl Keys {
             let prefers = CCursorRange::one(range.primary);
             range == prefers
         });
-        match is_at_end && pressed(Key::ArrowRight) {
-            true => Self::Complete,
-            false => Self::Nothing,
+        if is_at_end && pressed(Key::ArrowRight) {
+            Self::Complete
+        } else {
+            Self::Nothing
         }
     }
 }
@@ -300,9 +302,10 @@ fn split(text: &str) -> (PathBuf, &str) {
 }
 
 fn as_typed(entry: &Entry) -> String {
-    match entry.is_folder {
-        true => format!("{}/", entry.name),
-        false => entry.name.clone(),
+    if entry.is_folder {
+        format!("{}/", entry.name)
+    } else {
+        entry.name.clone()
     }
 }
 

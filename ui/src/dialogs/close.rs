@@ -85,9 +85,10 @@ impl ClosePainting {
                 ),
             };
             let text = RichText::new(words);
-            match warns {
-                true => ui.label(text.color(dialog::wrong(ui.visuals()))),
-                false => ui.label(text),
+            if warns {
+                ui.label(text.color(dialog::wrong(ui.visuals())))
+            } else {
+                ui.label(text)
             };
             ui.add_space(6.0);
             names = ui.button(tr!("Save under a name …")).clicked();

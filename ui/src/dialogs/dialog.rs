@@ -43,9 +43,10 @@ pub(crate) fn first() -> Id {
 /// The colour of what is wrong.
 #[must_use]
 pub(crate) fn wrong(visuals: &Visuals) -> Color32 {
-    match visuals.dark_mode {
-        true => Color32::from_rgb(240, 150, 90),
-        false => Color32::from_rgb(166, 62, 0),
+    if visuals.dark_mode {
+        Color32::from_rgb(240, 150, 90)
+    } else {
+        Color32::from_rgb(166, 62, 0)
     }
 }
 
@@ -105,9 +106,10 @@ fn below(ui: &mut Ui, foot: &Foot) -> Answer {
         ui.add_space(4.0);
     }
     let can = foot.busy.is_none() && foot.lacks.is_none();
-    let mut answer = match foot.entered && can {
-        true => Answer::Go,
-        false => Answer::Stay,
+    let mut answer = if foot.entered && can {
+        Answer::Go
+    } else {
+        Answer::Stay
     };
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         let go = RichText::new(foot.go).strong();

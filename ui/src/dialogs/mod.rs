@@ -199,9 +199,10 @@ impl Files {
             _ if work.rig.is_sketch() => self.save_as(work),
             (path, all) => {
                 let file = paths::shown(Path::new(path));
-                work.notifications.note(match all {
-                    true => tr!("Saved to {file}", file),
-                    false => tr!("Saving to {file} …", file),
+                work.notifications.note(if all {
+                    tr!("Saved to {file}", file)
+                } else {
+                    tr!("Saving to {file} …", file)
                 });
             }
         }

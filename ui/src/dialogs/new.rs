@@ -133,9 +133,10 @@ impl NewPainting {
             .to_owned());
         }
         self.unkept.check()?;
-        let path = match self.as_sketch {
-            true => None,
-            false => Some(self.file()?),
+        let path = if self.as_sketch {
+            None
+        } else {
+            Some(self.file()?)
         };
         Ok(RigCommand::New {
             path,

@@ -89,13 +89,12 @@ pub(crate) fn name(path: &Path) -> String {
 /// The same path with this ending, unless it has it.
 #[must_use]
 pub(crate) fn ending_in(path: &Path, wanted: &str) -> PathBuf {
-    match ending(path) == wanted {
-        true => path.to_owned(),
-        false => {
-            let mut name = path.file_name().unwrap_or_default().to_os_string();
-            name.push(format!(".{wanted}"));
-            path.with_file_name(name)
-        }
+    if ending(path) == wanted {
+        path.to_owned()
+    } else {
+        let mut name = path.file_name().unwrap_or_default().to_os_string();
+        name.push(format!(".{wanted}"));
+        path.with_file_name(name)
     }
 }
 

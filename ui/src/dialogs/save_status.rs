@@ -40,12 +40,13 @@ fn words(context: &Context, work: &PanelContext<'_>) -> String {
     };
     let status = &node.status;
     if status.path.is_empty() {
-        return match status.blank {
-            true => tr!("New painting").to_owned(),
-            false => match work.preferences.keys.written(context, Action::Save) {
+        return if status.blank {
+            tr!("New painting").to_owned()
+        } else {
+            match work.preferences.keys.written(context, Action::Save) {
                 key if key.is_empty() => tr!("In no file").to_owned(),
                 key => tr!("In no file · {key} keeps it", key),
-            },
+            }
         };
     }
     let since = work.rig.live.now_ns.saturating_sub(status.committed_ns);
@@ -109,12 +110,13 @@ fn room(window: Rect, bar: Option<Rect>, aside: f32) -> (f32, f32) {
     };
     let nearer = (bar.left() - window.left()).min(window.right() - bar.right());
     let free = whole - bar.width() - nearer;
-    match free >= LEAST_WIDTH {
-        true => (free, least_above),
-        false => (
+    if free >= LEAST_WIDTH {
+        (free, least_above)
+    } else {
+        (
             whole.max(LEAST_WIDTH),
             window.bottom() - bar.top() + least_above,
-        ),
+        )
     }
 }
 
@@ -158,9 +160,10 @@ mod tests {
             let window = Rect::from_min_max(Pos2::ZERO, pos2(width, 600.0));
             let (most, above) = room(window, Some(bar(left)), aside);
             assert!(most >= LEAST_WIDTH && most < width - aside);
-            let line = match left < 0.5 * width {
-                true => width - aside - most..width - aside,
-                false => aside..aside + most,
+            let line = if left < 0.5 * width {
+                width - aside - most..width - aside
+            } else {
+                aside..aside + most
             };
             let free = line.end <= left || line.start >= left + 300.0;
             assert_eq!(free, is_beside, "{line:?}");

@@ -52,17 +52,19 @@ pub(crate) fn widths_mm(file: &BrushFile) -> RangeInclusive<f64> {
         let (mut good, mut bad) = (now, end);
         for _ in 0..7 {
             let middle = (good * bad).sqrt();
-            match can(middle) {
-                true => good = middle,
-                false => bad = middle,
+            if can(middle) {
+                good = middle
+            } else {
+                bad = middle
             }
         }
         good
     };
     let sizes = file.sizes_mm.iter().copied();
-    let [least, most] = match file.sizes_mm.is_empty() {
-        true => [*OFFERED_MM.start(), *OFFERED_MM.end()],
-        false => [sizes.clone().fold(now, f64::min), sizes.fold(now, f64::max)],
+    let [least, most] = if file.sizes_mm.is_empty() {
+        [*OFFERED_MM.start(), *OFFERED_MM.end()]
+    } else {
+        [sizes.clone().fold(now, f64::min), sizes.fold(now, f64::max)]
     };
     farthest(least.min(now))..=farthest(most.max(now))
 }
@@ -72,11 +74,12 @@ pub(crate) fn widths_mm(file: &BrushFile) -> RangeInclusive<f64> {
 pub(crate) fn next_width_mm(now_mm: f64, up: bool) -> f64 {
     let factor = if up { 1.0 + STEP } else { 1.0 - STEP };
     let wanted = (now_mm * factor / GRAIN_MM).round() * GRAIN_MM;
-    match up {
-        true => wanted.max(((now_mm + 1e-9) / GRAIN_MM).floor() * GRAIN_MM + GRAIN_MM),
-        false => wanted
+    if up {
+        wanted.max(((now_mm + 1e-9) / GRAIN_MM).floor() * GRAIN_MM + GRAIN_MM)
+    } else {
+        wanted
             .min(((now_mm - 1e-9) / GRAIN_MM).ceil() * GRAIN_MM - GRAIN_MM)
-            .max(GRAIN_MM),
+            .max(GRAIN_MM)
     }
 }
 
@@ -86,11 +89,12 @@ pub(crate) fn next_width_mm(now_mm: f64, up: bool) -> f64 {
 /// A [`UserError`] where it cannot be read or is no brush.
 pub(crate) fn read(path: &Path) -> Result<BrushFile, UserError> {
     let bytes = std::fs::read(path).map_err(|error| UserError::reading(path, &error))?;
-    let read = match matches!(&*ending(path), "glb" | "gltf") {
-        true => maulstick_brush::gltf::read(&bytes).map_err(|error| error.to_string()),
-        false => std::str::from_utf8(&bytes)
+    let read = if matches!(&*ending(path), "glb" | "gltf") {
+        maulstick_brush::gltf::read(&bytes).map_err(|error| error.to_string())
+    } else {
+        std::str::from_utf8(&bytes)
             .map_err(|_| tr!("this is no text").to_owned())
-            .and_then(|text| BrushFile::parse(text).map_err(|error| error.to_string())),
+            .and_then(|text| BrushFile::parse(text).map_err(|error| error.to_string()))
     };
     read.map_err(|what| {
         UserError::failure(what)
@@ -318,9 +322,10 @@ impl PanelContext<'_> {
         let (now_mm, range) = (file.head.width_mm, widths_mm(file));
         let units = self.preferences.window.units;
         let next_mm = next_width_mm(now_mm, up);
-        let file = match range.contains(&next_mm) {
-            true => resized(file, next_mm).ok(),
-            false => None,
+        let file = if range.contains(&next_mm) {
+            resized(file, next_mm).ok()
+        } else {
+            None
         };
         match file {
             Some(file) => {
@@ -331,9 +336,10 @@ impl PanelContext<'_> {
             None => {
                 let kind = called(&file_kind(self));
                 let width = units.width(now_mm);
-                let words = match up {
-                    true => tr!("{kind} {width} is the widest", kind, width),
-                    false => tr!("{kind} {width} is the narrowest", kind, width),
+                let words = if up {
+                    tr!("{kind} {width} is the widest", kind, width)
+                } else {
+                    tr!("{kind} {width} is the narrowest", kind, width)
                 };
                 self.notifications.value("width", words);
             }

@@ -125,9 +125,10 @@ impl BrushTurn {
 
     fn with_turn(&mut self, place: &Pointer, grip: &Grip, pixel_m: f64) -> Pointer {
         let across = if grip.follows { self.across_rad } else { 0.0 };
-        let at = match place.pressed {
-            true => self.path.smooth(point(place), pixel_m),
-            false => point(place),
+        let at = if place.pressed {
+            self.path.smooth(point(place), pixel_m)
+        } else {
+            point(place)
         };
         Pointer {
             at: [at.x, at.y, place.at[2]],
@@ -172,9 +173,10 @@ fn direction(places: &[Pointer], least_m: f64) -> Option<f64> {
     }
     let along = 0.5 * atan2(2.0 * xy, xx - yy);
     let (sine, cosine) = sin_cos(along);
-    match DVec2::new(cosine, sine).dot(way) < 0.0 {
-        true => Some(along + PI),
-        false => Some(along),
+    if DVec2::new(cosine, sine).dot(way) < 0.0 {
+        Some(along + PI)
+    } else {
+        Some(along)
     }
 }
 

@@ -147,9 +147,10 @@ impl Keymap {
     pub(crate) fn hint(&self, context: &Context, words: &str, acts: &[Action]) -> String {
         let keys = acts.iter().map(|act| self.written(context, *act));
         let keys: Vec<String> = keys.filter(|key| !key.is_empty()).collect();
-        match keys.is_empty() {
-            true => words.to_owned(),
-            false => format!("{words}  {}", keys.join(tr!(" and "))),
+        if keys.is_empty() {
+            words.to_owned()
+        } else {
+            format!("{words}  {}", keys.join(tr!(" and ")))
         }
     }
 

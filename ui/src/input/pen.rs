@@ -153,9 +153,10 @@ impl WindowPen {
             let modifiers = input.modifiers;
             (modifiers.is_none() || modifiers.shift_only()) && !held && !self.is_pointing
         });
-        let per_point = match self.state.moves_no_pointer {
-            true => context.zoom_factor(),
-            false => context.pixels_per_point(),
+        let per_point = if self.state.moves_no_pointer {
+            context.zoom_factor()
+        } else {
+            context.pixels_per_point()
         };
         let view = view.map(|(view, surfaces)| -> Arc<dyn DeskView> {
             Arc::new(ShownDesk {

@@ -78,9 +78,10 @@ impl ColourWindow {
         if !self.shown {
             return;
         }
-        let (corner, inward) = match work.preferences.window.left_handed {
-            false => (Align2::RIGHT_TOP, -1.0),
-            true => (Align2::LEFT_TOP, 1.0),
+        let (corner, inward) = if work.preferences.window.left_handed {
+            (Align2::LEFT_TOP, 1.0)
+        } else {
+            (Align2::RIGHT_TOP, -1.0)
         };
         let at = corner.pos_in_rect(&context.content_rect());
         let side = sides::rack_side(work.preferences);
@@ -153,9 +154,10 @@ impl ColourWindow {
         let all = &mut work.preferences.reference.all_paints;
         ui.checkbox(all, tr!("All paints"))
             .on_hover_text(tr!("Not only those on the palette"));
-        let paints = match *all {
-            true => None,
-            false => of_palette(work.rig.live.palette()),
+        let paints = if *all {
+            None
+        } else {
+            of_palette(work.rig.live.palette())
         };
         let is_dragged = ui.ctx().egui_is_using_pointer();
         if let Some(scene) = work.rig.live.scene.as_ref().filter(|_| !is_dragged) {

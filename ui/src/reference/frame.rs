@@ -69,9 +69,10 @@ fn opening(place: Pos2, size: Vec2, palette: Option<Rect>, room: Rect) -> Pos2 {
     };
     let right = palette.right() + ASIDE;
     let left = palette.left() - ASIDE - size.x;
-    let x = match right <= last.x || left < room.left() {
-        true => right.min(last.x),
-        false => left,
+    let x = if right <= last.x || left < room.left() {
+        right.min(last.x)
+    } else {
+        left
     };
     pos2(x, place.y)
 }

@@ -291,9 +291,10 @@ impl Reference {
             pixel(cross.y, picture.size[1]),
         ]);
         self.picked = Some(linear);
-        let paints = match work.preferences.reference.all_paints {
-            true => None,
-            false => of_palette(work.rig.live.palette()),
+        let paints = if work.preferences.reference.all_paints {
+            None
+        } else {
+            of_palette(work.rig.live.palette())
         };
         self.picker.ask(Ask {
             linear,

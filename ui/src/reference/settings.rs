@@ -40,9 +40,12 @@ impl Default for ReferencePreferences {
 impl ReferencePreferences {
     /// The same with numbers that make a frame.
     pub(super) fn sound(&self) -> Self {
-        let within = |value: f32, least: f32, most: f32, usual: f32| match value.is_finite() {
-            true => value.clamp(least, most),
-            false => usual,
+        let within = |value: f32, least: f32, most: f32, usual: f32| {
+            if value.is_finite() {
+                value.clamp(least, most)
+            } else {
+                usual
+            }
         };
         let usual = Self::default();
         Self {

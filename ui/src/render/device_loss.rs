@@ -45,9 +45,10 @@ impl DeviceLoss {
 
     fn lose(&self, words: &str) {
         let words = words.trim();
-        let mut why = match words.is_empty() {
-            true => "its driver does not say why".to_owned(),
-            false => words.to_owned(),
+        let mut why = if words.is_empty() {
+            "its driver does not say why".to_owned()
+        } else {
+            words.to_owned()
         };
         why.truncate(why.floor_char_boundary(LONGEST));
         if let Err(error) = std::fs::write(&self.word, &why) {

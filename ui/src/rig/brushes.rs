@@ -337,9 +337,10 @@ impl TrackedBrush {
         {
             let led = DVec3::from_array(solve.pose.position_m) * solve.zoom;
             let shift = led - place(then).translation;
-            brush.translation += match sample.in_air() {
-                true => DVec3::new(0.0, 0.0, shift.z),
-                false => DVec3::new(shift.x, shift.y, 0.0),
+            brush.translation += if sample.in_air() {
+                DVec3::new(0.0, 0.0, shift.z)
+            } else {
+                DVec3::new(shift.x, shift.y, 0.0)
             };
         }
         let far = brush.translation.abs().max_element();

@@ -142,9 +142,10 @@ impl TransportBar {
                     let (sign, words) = control.words(position);
                     let key = KeyboardShortcut::new(Modifiers::NONE, control.key());
                     let key = written(ui.ctx(), &key);
-                    let hint = match control.has_key(replay, keymap) {
-                        true => format!("{words}  {key}"),
-                        false => tr!("{words} ({key} keeps its use while you paint)", words, key),
+                    let hint = if control.has_key(replay, keymap) {
+                        format!("{words}  {key}")
+                    } else {
+                        tr!("{words} ({key} keeps its use while you paint)", words, key)
                     };
                     if button(ui, sign, words).on_hover_text(hint).clicked() {
                         order = Some(control.order());

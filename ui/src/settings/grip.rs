@@ -36,13 +36,15 @@ impl Grip {
     pub(crate) fn sane(self) -> Self {
         let default = Self::default();
         Self {
-            turn_deg: match self.turn_deg.is_finite() {
-                true => self.turn_deg,
-                false => default.turn_deg,
+            turn_deg: if self.turn_deg.is_finite() {
+                self.turn_deg
+            } else {
+                default.turn_deg
             },
-            pressure: match MOUSE_PRESSURE.contains(&self.pressure) {
-                true => self.pressure,
-                false => default.pressure,
+            pressure: if MOUSE_PRESSURE.contains(&self.pressure) {
+                self.pressure
+            } else {
+                default.pressure
             },
             ..self
         }

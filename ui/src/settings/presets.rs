@@ -199,12 +199,13 @@ pub(crate) fn check_name<'a>(
             most = NAME_MAX
         ));
     }
-    match others.any(|other| other == name) {
-        true => Err(tr!(
+    if others.any(|other| other == name) {
+        Err(tr!(
             "There is a '{name}' already; choose another name.",
             name
-        )),
-        false => Ok(()),
+        ))
+    } else {
+        Ok(())
     }
 }
 

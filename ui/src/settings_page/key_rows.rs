@@ -177,9 +177,10 @@ impl KeyRows {
             ui.memory_mut(|memory| memory.set_focus_lock_filter(button.id, all));
         }
         if button.clicked() {
-            self.waits = match is_waiting {
-                true => Waits::Nothing,
-                false => Waits::Key(place),
+            self.waits = if is_waiting {
+                Waits::Nothing
+            } else {
+                Waits::Key(place)
             };
         }
         ui.label(translated(binding.words));

@@ -36,9 +36,10 @@ impl Tracing {
     /// Its strength, in range whatever the file of the settings says.
     #[must_use]
     pub fn sound_strength(&self) -> f32 {
-        match self.strength.is_finite() {
-            true => self.strength.clamp(0.0, 1.0),
-            false => STRENGTH,
+        if self.strength.is_finite() {
+            self.strength.clamp(0.0, 1.0)
+        } else {
+            STRENGTH
         }
     }
 }

@@ -152,9 +152,10 @@ impl Progress {
         };
         (status.baked < status.baking).then(|| Job {
             kind: Kind::Relighting,
-            words: match is_relit {
-                true => tr!("Relighting dry layers").into(),
-                false => tr!("Showing the layers anew").into(),
+            words: if is_relit {
+                tr!("Relighting dry layers").into()
+            } else {
+                tr!("Showing the layers anew").into()
             },
             share: Some(share),
             cancel: before.as_ref().filter(|_| is_relit).map(back),
@@ -203,9 +204,10 @@ fn drying(rig: &RigState) -> Option<Job> {
     let stop = StopDrying { surface: CANVAS };
     Some(Job {
         kind: Kind::Drying,
-        words: match drying.layer.is_empty() {
-            true => tr!("Drying").to_owned(),
-            false => tr!("Drying “{layer}”", layer = drying.layer),
+        words: if drying.layer.is_empty() {
+            tr!("Drying").to_owned()
+        } else {
+            tr!("Drying “{layer}”", layer = drying.layer)
         },
         share: Some(f64::from(drying.share)),
         cancel: Some(Cancel::Paint(Box::new(stop.into()))),

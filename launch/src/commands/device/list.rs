@@ -82,10 +82,8 @@ fn in_words(findings: &DeviceListing) -> String {
     }
     // What paints already comes before what might.
     let is_used = is_used(findings);
-    let mut text = match is_used {
-        true => in_rig(findings.rig.as_deref()) + "\n",
-        false => String::new(),
-    };
+    let in_rig = in_rig(findings.rig.as_deref());
+    let mut text = is_used.then(|| in_rig.clone() + "\n").unwrap_or_default();
     if !rows.is_empty() {
         text += &table(["device", "id", "at", "driver", ""], &rows);
     }
@@ -102,10 +100,7 @@ fn in_words(findings: &DeviceListing) -> String {
         let device = usable.min_by_key(|device| device.driver == Some("spacemouse"));
         text += &device.map(advice).unwrap_or_default();
     }
-    match is_used {
-        true => text,
-        false => text + "\n" + &in_rig(findings.rig.as_deref()),
-    }
+    if is_used { text } else { text + "\n" + &in_rig }
 }
 
 /// True if a device of the rig has shown itself.
@@ -147,11 +142,10 @@ fn nothing(findings: &DeviceListing) -> String {
         .iter()
         .map(|path| path.display().to_string())
         .collect();
-    let first = match is_used(findings) {
-        true => "Nothing else is attached that a driver fits.",
-        false => {
-            "Nothing attached that a driver fits; the mouse paints, and so does `driver = \"simulated\"`."
-        }
+    let first = if is_used(findings) {
+        "Nothing else is attached that a driver fits."
+    } else {
+        "Nothing attached that a driver fits; the mouse paints, and so does `driver = \"simulated\"`."
     };
     format!(
         "{first}\n\

@@ -68,9 +68,10 @@ pub fn run(options: &NewOptions) -> Result<i32, UserError> {
         width_m: width * 1e-2,
         height_m: height * 1e-2,
         cell_m: 1e-3 / options.cells_per_mm,
-        ground: match is_path(&options.ground) {
-            true => MaterialName::new(whole_path(Path::new(&options.ground))?)?,
-            false => MaterialName::new(&*options.ground)?,
+        ground: if is_path(&options.ground) {
+            MaterialName::new(whole_path(Path::new(&options.ground))?)?
+        } else {
+            MaterialName::new(&*options.ground)?
         },
         tooth: MaterialName::new(&*options.tooth)?,
         tooth_seed: options.seed,

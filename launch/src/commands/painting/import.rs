@@ -100,9 +100,10 @@ impl ImportOptions {
 
     fn paint(&self, sequencer: &mut Sequencer, image: &Image) -> Result<String, UserError> {
         let painting = sequencer.painting_mut();
-        let paints = match self.paints.is_empty() {
-            true => paints_at_hand(painting),
-            false => self.paints.clone(),
+        let paints = if self.paints.is_empty() {
+            paints_at_hand(painting)
+        } else {
+            self.paints.clone()
         };
         let wrong = |error: ImportError| self.fault(&error);
         let support = Support::of(painting, CANVAS, &paints).map_err(wrong)?;
@@ -157,11 +158,10 @@ impl ImportOptions {
 
 /// What is to be done where the picture is hardly to be recognised.
 fn advice(colour_error: &ColourError) -> &'static str {
-    match colour_error.mean > FAR {
-        true => {
-            "; these paints do not make its colours: --paint NAME takes others, and `maulstick colour paints` lists them"
-        }
-        false => "",
+    if colour_error.mean > FAR {
+        "; these paints do not make its colours: --paint NAME takes others, and `maulstick colour paints` lists them"
+    } else {
+        ""
     }
 }
 

@@ -75,9 +75,10 @@ pub(super) fn words(command: &Command, names: &mut Names) -> String {
         }) => {
             let begins = if *again { "begin again" } else { "begin" };
             let loads: Vec<String> = loads.iter().map(mixture).collect();
-            let loaded = match loads.is_empty() {
-                true => String::new(),
-                false => format!(", loaded with {}", loads.join("; ")),
+            let loaded = if loads.is_empty() {
+                String::new()
+            } else {
+                format!(", loaded with {}", loads.join("; "))
             };
             let device = names.device(*device);
             format!("{begins} a take of {device} with {brush}{loaded}")

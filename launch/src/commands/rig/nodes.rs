@@ -46,9 +46,10 @@ pub fn run(options: &NodesOptions) -> Result<i32, UserError> {
             let Some(name) = topics.node_of(&token.key) else {
                 continue;
             };
-            match token.present {
-                true => nodes.insert(name.to_owned()),
-                false => nodes.remove(name),
+            if token.present {
+                nodes.insert(name.to_owned())
+            } else {
+                nodes.remove(name)
             };
         }
         while let Some(status) = statuses.try_recv() {
@@ -66,9 +67,10 @@ pub fn run(options: &NodesOptions) -> Result<i32, UserError> {
             (name, status)
         })
         .collect();
-    match options.json {
-        true => print_json(&Value::Array(nodes.iter().map(to_json).collect()))?,
-        false => print_text(&to_text(&nodes))?,
+    if options.json {
+        print_json(&Value::Array(nodes.iter().map(to_json).collect()))?
+    } else {
+        print_text(&to_text(&nodes))?
     }
     Ok(0)
 }

@@ -138,9 +138,10 @@ fn ms<const N: usize>(times: &Distribution, shares: [f64; N]) -> [String; N] {
             1.0 => times.most(),
             share => times.quantile(share),
         };
-        match times.is_empty() {
-            true => "-".to_owned(),
-            false => format!("{:.2}", ns as f64 * 1e-6),
+        if times.is_empty() {
+            "-".to_owned()
+        } else {
+            format!("{:.2}", ns as f64 * 1e-6)
         }
     })
 }

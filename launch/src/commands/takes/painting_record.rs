@@ -93,11 +93,10 @@ impl PaintingRecord {
     /// A [`UserError`] where it cannot be read or written.
     pub(super) fn write_painting(&self, to: &Path) -> Result<(), UserError> {
         let failed = |error| wrong(&self.path, &error);
-        match record::rewind(&self.begin).map_err(failed)? {
-            true => {
-                std::fs::rename(&self.begin, to).map_err(|error| UserError::writing(to, &error))
-            }
-            false => Err(no_record(&self.path)),
+        if record::rewind(&self.begin).map_err(failed)? {
+            std::fs::rename(&self.begin, to).map_err(|error| UserError::writing(to, &error))
+        } else {
+            Err(no_record(&self.path))
         }
     }
 

@@ -140,12 +140,15 @@ fn tell_haste(too_fast: u64) {
 
 /// Reads a take; a script in its place is refused with advice.
 fn read_take(path: &Path) -> Result<Take, UserError> {
-    Take::read(path).map_err(|fault| match ending(path) == "toml" && path.exists() {
-        true => fault.help(format!(
-            "a script is painted with `--script {}`",
-            path.display()
-        )),
-        false => fault,
+    Take::read(path).map_err(|fault| {
+        if ending(path) == "toml" && path.exists() {
+            fault.help(format!(
+                "a script is painted with `--script {}`",
+                path.display()
+            ))
+        } else {
+            fault
+        }
     })
 }
 

@@ -114,9 +114,10 @@ fn embed(options: &EmbedOptions) -> Result<i32, UserError> {
 /// Setup embedded in a take, in words; empty if there is none.
 fn kit_in_words(kit: &TakeSetup) -> String {
     let bytes: usize = kit.files.values().map(Vec::len).sum();
-    let loads = match kit.loads.is_empty() {
-        true => "no load".to_owned(),
-        false => kit.loads.join("; "),
+    let loads = if kit.loads.is_empty() {
+        "no load".to_owned()
+    } else {
+        kit.loads.join("; ")
     };
     format!(
         "canvas, brush, paints and light ({:.1} kB); {loads}",

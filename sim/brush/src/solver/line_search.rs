@@ -3,9 +3,9 @@
 use super::{ContactConstraint, Energy, Problem, Solver};
 use crate::spine::SpineShape;
 
-/// A step turns no segment by more than this, rad.
+/// Greatest rotation of a segment in one step, rad.
 const LONGEST_TURN: f64 = 0.7;
-/// Times that a step is halved at most.
+/// Greatest number of times that a step is halved.
 const HALVINGS: usize = 30;
 
 /// Sum of the depths of all joints within their half spaces, m.
@@ -14,8 +14,8 @@ fn sunk(gaps: &[f64]) -> f64 {
 }
 
 impl Solver {
-    /// Goes along the step as far as energy and penetration together fall, and returns the energy there; `None` if they
-    /// do not, with everything as it was.
+    /// Moves along the step while energy and penetration together fall, and returns the energy there; `None` if they
+    /// do not, with everything unchanged.
     pub(super) fn line_search(
         &mut self,
         problem: Problem<'_>,
@@ -70,8 +70,8 @@ impl Solver {
         }
     }
 
-    /// Second-order correction: the half spaces are curved in the directions, so a straight step leaves the binding
-    /// constraints; puts the trial back onto them along their columns. False if no constraint binds.
+    /// Second-order correction. The half spaces are curved in the directions, so a straight step leaves the binding
+    /// constraints; this moves the trial back onto them along their columns. False if no constraint binds.
     fn correct(&mut self, shape: &mut SpineShape) -> bool {
         let program = &mut self.program;
         let (candidates, gaps) = (&self.candidates, &self.point.gaps);

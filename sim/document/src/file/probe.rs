@@ -1,7 +1,7 @@
-//! Probe of the disk: does it still give the bytes of a painting?
+//! Probe of the disk: tests whether it can still read the bytes of a painting.
 //!
-//! Where the system reports an error on reading, SQLite says that the database is malformed
-//! (`SQLITE_IOERR_CORRUPTFS` in `vdbe.c`), as of a file with wrong bytes. A painting on a disk that fails is not damaged.
+//! Where the system reports a read error, SQLite reports a malformed database (`SQLITE_IOERR_CORRUPTFS` in `vdbe.c`),
+//! as for a file with wrong bytes. A painting on a failing disk is not damaged.
 
 use std::fs::File;
 use std::os::unix::fs::FileExt as _;
@@ -12,7 +12,7 @@ use maulstick_files::companion;
 use crate::error::DocumentError;
 use crate::file::path::resolved;
 
-/// Bytes that are read at once.
+/// Number of bytes read at once.
 const PIECE: usize = 1 << 20;
 
 /// A file that is read beside SQLite. It is opened once it is locked, and closed after SQLite has closed it: when any file

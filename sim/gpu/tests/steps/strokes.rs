@@ -1,4 +1,4 @@
-//! Whole strokes of any model on the device: twice the same, with the books in order, and when the device is lost.
+//! Whole strokes of any model on the device: twice the same, with balanced books, and after a loss of the device.
 
 use maulstick_gpu::GpuError;
 use maulstick_painting::edits::{Clean, Load};
@@ -11,10 +11,10 @@ use maulstick_types::{Flags, Header, Message as _, name_hash};
 use crate::device;
 use crate::easel::{Easel, all, lifted, mixture, paint, stroke, volume};
 
-/// True if what two backends painted where there was as much before is alike.
+/// True if the paintings of two backends agree, given the amount before.
 pub(crate) type Agree<'a> = &'a dyn Fn(&mut Painting, &mut Painting, u64) -> bool;
 
-/// Whoever looks at the painting meanwhile, and however often: the same bytes.
+/// Looking at the painting during a stroke, at any rate, leaves the bytes the same.
 pub(crate) fn have_the_same_bytes(easel: Easel<'_>) {
     let mut once = easel(Some(device()));
     let mut looked_at = easel(Some(device()));
@@ -83,7 +83,7 @@ pub(crate) fn header(seq: u64) -> Header {
     }
 }
 
-/// What a paint node with this sequencer has decided.
+/// Decisions of a paint node with this sequencer.
 pub(crate) fn decisions(sequencer: &mut Sequencer) -> Vec<Decision> {
     let entries = sequencer.drain_journal().into_iter();
     let decided = entries.filter_map(|entry| match entry.entry {
@@ -93,8 +93,8 @@ pub(crate) fn decisions(sequencer: &mut Sequencer) -> Vec<Decision> {
     decided.collect()
 }
 
-/// The device goes in mid-stroke, with steps on it that nobody has seen: the processor does them again,
-/// goes on, and at the stroke's end that is journalled.
+/// A device lost in mid-stroke, with unsettled steps: the processor repeats them and continues, and the switch is
+/// journalled at the stroke's end.
 pub(crate) fn outlive_their_device(easel: Easel<'_>, agree: Agree<'_>) {
     let before = volume(&mut easel(None));
     for (strokes, lost_at) in [(1, 20), (2, 0)] {

@@ -5,9 +5,9 @@
 pub enum Fault {
     /// A reading or a force was not a number.
     NotANumber,
-    /// The hand was faster than any hand is, with force on it.
+    /// The hand was faster than a human hand, with force on it.
     TooFast,
-    /// It kept shaking, however soft the force was made.
+    /// The hand kept shaking at the softest force.
     Oscillation,
     /// The force state of an earlier servo could not be read.
     UnknownState,

@@ -7,10 +7,10 @@ use crate::layers::Layers;
 use crate::sheet::PANELS;
 use crate::step::Dab;
 
-/// Strength of the embossing, encoded channel by metre.
+/// Strength of the embossing, change of an encoded channel per metre.
 const EMBOSS: f32 = 250.0;
 
-/// Oil paint from the tube, as the hand alone feels it: in this model paint does not flow (Baxter 2004, § 5.2).
+/// Rheology of oil paint from the tube, for the hand alone: in this model paint does not flow (Baxter 2004, § 5.2).
 const RHEOLOGY: Rheology = Rheology {
     viscosity_m2_s: 1e-2,
     thinning: -4.6,
@@ -21,7 +21,7 @@ const RHEOLOGY: Rheology = Rheology {
     },
 };
 
-/// The entry.
+/// Registry entry of `dab`.
 pub const ENTRY: ModelEntry = ModelEntry {
     shown: &Layers { emboss: EMBOSS },
     auto: Some(AutoRole::Lighter),

@@ -17,7 +17,7 @@ pub const RHEOLOGY: Rheology = Rheology {
     },
 };
 
-/// The entry.
+/// Registry entry of `impasto`.
 pub const ENTRY: ModelEntry = ModelEntry {
     auto: Some(AutoRole::First),
     #[cfg(feature = "device")]

@@ -81,9 +81,10 @@ fn converted(distance: &Distance, cell_m: f64, f: &mut fmt::Formatter<'_>) -> fm
     )?;
     let [x, y] = farthest.cell.map(|cell| (cell as f64 + 0.5) * cell_m * 1e3);
     let film_um = farthest.film_m * 1e6;
-    let why = match farthest.is_thin() {
-        true => "a film so thin does not hide as it did",
-        false => "no mixture of the paints has that colour",
+    let why = if farthest.is_thin() {
+        "a film so thin does not hide as it did"
+    } else {
+        "no mixture of the paints has that colour"
     };
     let worst = distance.worst;
     write!(

@@ -27,9 +27,10 @@ where
     T: FromStr<Err: fmt::Display> + Deserialize<'de>,
     D: Deserializer<'de>,
 {
-    match from.is_human_readable() {
-        true => from.deserialize_any(Text("a text", std::marker::PhantomData)),
-        false => T::deserialize(from),
+    if from.is_human_readable() {
+        from.deserialize_any(Text("a text", std::marker::PhantomData))
+    } else {
+        T::deserialize(from)
     }
 }
 
@@ -39,9 +40,10 @@ where
     T: FromStr<Err: fmt::Display> + Deserialize<'de>,
     D: Deserializer<'de>,
 {
-    match from.is_human_readable() {
-        true => text(from).map(Some),
-        false => Option::deserialize(from),
+    if from.is_human_readable() {
+        text(from).map(Some)
+    } else {
+        Option::deserialize(from)
     }
 }
 
@@ -54,8 +56,11 @@ pub(super) fn canvas() -> u32 {
 #[cfg(feature = "cli")]
 pub(super) fn surface() -> impl clap::builder::TypedValueParser<Value = u32> {
     use clap::builder::TypedValueParser as _;
-    clap::builder::BoolishValueParser::new().map(|palette| match palette {
-        true => maulstick_types::scene::PALETTE,
-        false => maulstick_types::scene::CANVAS,
+    clap::builder::BoolishValueParser::new().map(|palette| {
+        if palette {
+            maulstick_types::scene::PALETTE
+        } else {
+            maulstick_types::scene::CANVAS
+        }
     })
 }

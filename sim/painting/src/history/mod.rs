@@ -193,12 +193,11 @@ impl History {
         let newest = self.last_done(None).map_or(0, |step| step.id);
         if let Some(mut step) = self.steps.remove(&id) {
             step.done = true;
-            match id > newest {
-                true => self.insert(step),
-                false => {
-                    self.touched.insert(id);
-                    self.push(step);
-                }
+            if id > newest {
+                self.insert(step)
+            } else {
+                self.touched.insert(id);
+                self.push(step);
             }
         }
     }

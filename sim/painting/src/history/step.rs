@@ -188,9 +188,10 @@ impl Step {
     /// True if it changed anything that the other one changed.
     pub(super) fn lies_on(&self, other: &Self) -> bool {
         let changes = |change: &Change| !same(&change.before, &change.after);
-        let (few, many) = match self.tiles.len() < other.tiles.len() {
-            true => (&self.tiles, &other.tiles),
-            false => (&other.tiles, &self.tiles),
+        let (few, many) = if self.tiles.len() < other.tiles.len() {
+            (&self.tiles, &other.tiles)
+        } else {
+            (&other.tiles, &self.tiles)
         };
         let mut tiles = few.iter();
         let mut loads = self.effects.loads.keys();

@@ -65,10 +65,7 @@ fn stroke(kind: &str, pause: Range<u64>, hand: Hand, after: After) -> Stroke {
     let mut numbers = Vec::new();
     let times = (0..=STROKE_MS + rested).step_by(STEP_MS as usize);
     for ms in times.filter(|ms| !(pause.start + 1..pause.end).contains(ms)) {
-        let moved_ms = match ms > pause.start {
-            true => ms - rested,
-            false => ms,
-        };
+        let moved_ms = if ms > pause.start { ms - rested } else { ms };
         // Against the lean of the pen a head that lands is bent the other way than a drawn one.
         let x = match hand {
             Hand::Moves => along(moved_ms),

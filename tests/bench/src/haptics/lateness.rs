@@ -60,9 +60,10 @@ pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     let (start, before_s) = (Instant::now(), load.seconds());
     for _ in 0..PAIRS {
         let (ours, _) = ours(TICKS)?;
-        let theirs = match peer {
-            true => Some(cyclictest::run(place.path(), TICKS)?),
-            false => None,
+        let theirs = if peer {
+            Some(cyclictest::run(place.path(), TICKS)?)
+        } else {
+            None
         };
         load.check()?;
         pairs.push((ours, theirs));
@@ -75,9 +76,10 @@ pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
             (ours.quantile(share), theirs)
         };
         let values: Vec<(f64, f64)> = pairs.iter().map(of).collect();
-        match peer {
-            true => report.paired(name, "µs", "cyclictest", &values),
-            false => report.median(name, "µs", values.iter().map(|pair| pair.0).collect()),
+        if peer {
+            report.paired(name, "µs", "cyclictest", &values)
+        } else {
+            report.median(name, "µs", values.iter().map(|pair| pair.0).collect())
         }
     }
     Ok(())
@@ -88,9 +90,10 @@ fn ours(ticks: u64) -> Result<(Histogram, Scheduling), UserError> {
     let device = MountedDevice::new(Box::new(Simulated::at_rest()), Registration::IDENTITY, 0);
     let mut servo =
         ServoThread::start(device, Box::new(MonotonicClock), Limits::default()).map_err(fault)?;
-    let scheduling = match servo.warnings.iter().any(|what| what.contains("real-time")) {
-        true => Scheduling::Other,
-        false => Scheduling::Fifo,
+    let scheduling = if servo.warnings.iter().any(|what| what.contains("real-time")) {
+        Scheduling::Other
+    } else {
+        Scheduling::Fifo
     };
     let mut histogram = Histogram::default();
     let mut heard = Instant::now();

@@ -96,12 +96,13 @@ fn watch(bus: &ZenohBus, seconds: f64, rig: &mut Running) -> Result<Seen, UserEr
             give_up = Instant::now() + GRACE;
         }
     }
-    match is_over && !seen.frames.is_empty() {
-        true => Ok(seen),
-        false => Err(
+    if is_over && !seen.frames.is_empty() {
+        Ok(seen)
+    } else {
+        Err(
             UserError::failure("the window showed nothing, or the take did not end")
                 .help("`maulstick up --play` on this display says why"),
-        ),
+        )
     }
 }
 

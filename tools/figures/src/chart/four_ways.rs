@@ -21,9 +21,10 @@ const SMALL: f32 = 16.0;
 pub(crate) fn shares() -> Vec<(f64, String)> {
     let step = |k: i32| {
         let ratio = f64::from(1 << k.unsigned_abs());
-        match k < 0 {
-            true => (1.0 / (1.0 + ratio), format!("{ratio}:1")),
-            false => (ratio / (1.0 + ratio), format!("1:{ratio}")),
+        if k < 0 {
+            (1.0 / (1.0 + ratio), format!("{ratio}:1"))
+        } else {
+            (ratio / (1.0 + ratio), format!("1:{ratio}"))
         }
     };
     let mut shares = vec![(0.0, "1:0".to_owned())];

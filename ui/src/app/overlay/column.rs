@@ -131,9 +131,10 @@ fn head(ui: &mut Ui, side: WindowSide, work: &mut PanelContext<'_>) {
 
 /// The side of the window that a point is nearer to.
 fn half_of(window: Rect, at: Pos2) -> WindowSide {
-    match at.x < window.center().x {
-        true => WindowSide::Left,
-        false => WindowSide::Right,
+    if at.x < window.center().x {
+        WindowSide::Left
+    } else {
+        WindowSide::Right
     }
 }
 

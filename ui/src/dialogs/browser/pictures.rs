@@ -126,9 +126,12 @@ struct Sums {
 impl Sums {
     fn of(cells: [u32; 2]) -> Self {
         let longer = cells[0].max(cells[1]).max(1);
-        let size = cells.map(|side| match longer > SIDE {
-            true => (side * SIDE).div_ceil(longer).max(1) as usize,
-            false => side.max(1) as usize,
+        let size = cells.map(|side| {
+            if longer > SIDE {
+                (side * SIDE).div_ceil(longer).max(1) as usize
+            } else {
+                side.max(1) as usize
+            }
         });
         Self {
             size,
@@ -163,9 +166,12 @@ impl Sums {
     fn picture(&self, ground: [f32; 3]) -> Option<Picture> {
         let byte =
             |linear: f32| (srgb_encode(f64::from(linear).clamp(0.0, 1.0)) * 255.0).round() as u8;
-        let pixel = |sum: &[f32; 4]| match sum[3] > 0.0 {
-            true => [0, 1, 2].map(|i| byte(sum[i] / sum[3])),
-            false => ground.map(byte),
+        let pixel = |sum: &[f32; 4]| {
+            if sum[3] > 0.0 {
+                [0, 1, 2].map(|i| byte(sum[i] / sum[3]))
+            } else {
+                ground.map(byte)
+            }
         };
         Picture::new(self.size, self.sums.iter().flat_map(pixel).collect())
     }

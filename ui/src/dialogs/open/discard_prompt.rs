@@ -45,13 +45,14 @@ impl UnsavedState {
     /// # Errors
     /// Advice in words.
     pub(crate) fn check(self) -> Result<(), String> {
-        match self.would_go && !self.let_go {
-            true => Err(tr!(
+        if self.would_go && !self.let_go {
+            Err(tr!(
                 "The painting on the easel is in no file and would be gone. Keep it first \
                  (Escape, then Ctrl+S), or tick that you let it go."
             )
-            .to_owned()),
-            false => Ok(()),
+            .to_owned())
+        } else {
+            Ok(())
         }
     }
 }

@@ -16,9 +16,10 @@ impl PanelContext<'_> {
     pub(crate) fn preset_in_hand(&self, name: &str) -> Option<Preset> {
         let file = self.in_hand()?;
         let (tuning, handling) = (self.rig.tuning(), self.rig.handling());
-        let text = match is_of_library(file) {
-            true => String::new(),
-            false => file.to_toml().ok()?,
+        let text = if is_of_library(file) {
+            String::new()
+        } else {
+            file.to_toml().ok()?
         };
         let mut modes = BrushMode::NAMES.iter();
         let mode = modes.find(|(_, mode)| *mode == handling.mode);

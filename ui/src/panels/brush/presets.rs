@@ -35,9 +35,10 @@ fn small_width(ui: &Ui, word: &str) -> f32 {
 
 /// Name of a preset in the language of the window; one that a painter gave stays as it is.
 fn shown_name(preset: &Preset) -> &str {
-    match ["Glaze", "Scumble", "Blend", "Dry brush"].contains(&&*preset.name) {
-        true => known(&preset.name),
-        false => &preset.name,
+    if ["Glaze", "Scumble", "Blend", "Dry brush"].contains(&&*preset.name) {
+        known(&preset.name)
+    } else {
+        &preset.name
     }
 }
 

@@ -213,14 +213,13 @@ impl DevicePanel {
                 .color(Color32::WHITE);
             let button = Button::new(words).fill(RED).min_size(vec2(0.0, 32.0));
             let key = work.preferences.keys.written(ui.ctx(), Action::ForceOff);
-            let hint = match key.is_empty() {
-                true => tr!("The device gives no force any more, at once").to_owned(),
-                false => {
-                    tr!(
-                        "The device gives no force any more, at once ({key}, for all devices)",
-                        key
-                    )
-                }
+            let hint = if key.is_empty() {
+                tr!("The device gives no force any more, at once").to_owned()
+            } else {
+                tr!(
+                    "The device gives no force any more, at once ({key}, for all devices)",
+                    key
+                )
             };
             if wide(ui, button).on_hover_text(hint).clicked() {
                 work.requests.force(name, ForceOrder::Off);
@@ -244,9 +243,10 @@ impl DevicePanel {
             }
         }
         let now_ns = work.rig.live.now_ns;
-        let most_n = match status.cap_n > 0.0 {
-            true => status.cap_n,
-            false => info.max_force_n,
+        let most_n = if status.cap_n > 0.0 {
+            status.cap_n
+        } else {
+            info.max_force_n
         };
         let force_n = device.forces.force_n(now_ns);
         ui.horizontal(|ui| {
@@ -333,13 +333,14 @@ fn moves(info: &StylusInfo, brushes: usize) -> String {
 /// Driver and rate.
 fn driven(info: &StylusInfo) -> String {
     let driver = &info.driver;
-    match info.rate_hz >= 1.0 {
-        true => tr!(
+    if info.rate_hz >= 1.0 {
+        tr!(
             "Driver “{driver}”, {rate} times a second",
             driver,
             rate = format_args!("{:.0}", info.rate_hz)
-        ),
-        false => tr!("Driver “{driver}”", driver),
+        )
+    } else {
+        tr!("Driver “{driver}”", driver)
     }
 }
 
@@ -373,15 +374,16 @@ fn numbers(ui: &mut Ui, force_n: Option<[f64; 3]>, most_n: f64, status: &StylusS
         given = format_args!("{:.0}", status.stiffness_n_m),
         asked = format_args!("{:.0}", status.asked_n_m)
     );
-    let motors = match status.resting {
-        true => tr!(
+    let motors = if status.resting {
+        tr!(
             "{percent} % hot, resting",
             percent = format_args!("{:.0}", 100.0 * status.motor_temperature)
-        ),
-        false => tr!(
+        )
+    } else {
+        tr!(
             "{percent} % hot",
             percent = format_args!("{:.0}", 100.0 * status.motor_temperature)
-        ),
+        )
     };
     Grid::new("numbers")
         .num_columns(2)

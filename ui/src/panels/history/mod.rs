@@ -117,9 +117,10 @@ impl HistoryPanel {
             picture_of(ui, work, &mut self.textures, name);
             ui.with_layout(Layout::top_down(Align::Min), |ui| {
                 ui.horizontal(|ui| {
-                    let title = match version.here {
-                        true => RichText::new(name).strong(),
-                        false => RichText::new(name),
+                    let title = if version.here {
+                        RichText::new(name).strong()
+                    } else {
+                        RichText::new(name)
                     };
                     ui.add(eframe::egui::Label::new(title).truncate());
                     if version.here {

@@ -12,9 +12,12 @@ use crate::test_support::panel_bench::{Bench, harness, picture, rig, steps};
 use maulstick_client::state::PaintNode;
 
 fn landscape([red, green, blue]: [u8; 3]) -> Picture {
-    let pixel = |i: usize| match i / 40 < 18 {
-        true => [150, 190, 230],
-        false => [red, green, blue],
+    let pixel = |i: usize| {
+        if i / 40 < 18 {
+            [150, 190, 230]
+        } else {
+            [red, green, blue]
+        }
     };
     let rgb: Vec<u8> = (0..40 * 30).flat_map(pixel).collect();
     Picture::new([40, 30], rgb).expect("three bytes a pixel")

@@ -167,9 +167,10 @@ impl LayersPanel {
                 tr!("Show {layer}", layer = layer_name(layer)),
             )
         });
-        let button = button.on_hover_text(match is_shown {
-            true => tr!("Hide this layer; its relief stays"),
-            false => tr!("Show this layer again"),
+        let button = button.on_hover_text(if is_shown {
+            tr!("Hide this layer; its relief stays")
+        } else {
+            tr!("Show this layer again")
         });
         if !button.clicked() {
             return None;

@@ -160,9 +160,12 @@ pub(crate) mod tests {
     #[test]
     fn the_tip_is_seen_from_left_to_right() {
         let head = Head::of(&BrushFile::library("flat").expect("flat"));
-        let strip = |root: &[f32; 2]| match root[0] < 0.0 {
-            true => [[0.0; 4], [1.0, 0.0, 0.0, 1.0]],
-            false => [[0.0; 4], [0.0, 0.0, 1.0, 1.0]],
+        let strip = |root: &[f32; 2]| {
+            if root[0] < 0.0 {
+                [[0.0; 4], [1.0, 0.0, 0.0, 1.0]]
+            } else {
+                [[0.0; 4], [0.0, 0.0, 1.0, 1.0]]
+            }
         };
         let samples: Vec<_> = head.roots().iter().flat_map(strip).collect();
         let coat = coat_of(head.strips() as u32, 2, &samples);

@@ -66,11 +66,12 @@ pub(super) fn origin(text: &str) -> Result<String, String> {
     let is_sound = text.split_once("://").is_some_and(|(scheme, host)| {
         !scheme.is_empty() && !host.contains('/') && !text.contains(char::is_whitespace)
     });
-    match is_sound {
-        true => Ok(text.to_ascii_lowercase()),
-        false => Err(format!(
+    if is_sound {
+        Ok(text.to_ascii_lowercase())
+    } else {
+        Err(format!(
             "'{text}' is no origin, such as http://localhost:8080"
-        )),
+        ))
     }
 }
 
@@ -101,9 +102,10 @@ impl Admission {
             .get_all(SEC_WEBSOCKET_PROTOCOL)
             .iter()
             .flat_map(|header| header.to_str().unwrap_or_default().split(','));
-        match offered.any(|offered| offered.trim() == PROTOCOL) {
-            true => Ok(()),
-            false => Err(Refusal::Protocol),
+        if offered.any(|offered| offered.trim() == PROTOCOL) {
+            Ok(())
+        } else {
+            Err(Refusal::Protocol)
         }
     }
 }

@@ -65,9 +65,10 @@ pub(super) fn run(options: &BridgeOptions) -> Result<i32, UserError> {
     print_beside();
     let mut listener = Listener::open(options.target.rig(), &options.topic)?;
     let name = format!("maulstick {}", options.target.rig());
-    let token = match options.no_token {
-        true => None,
-        false => Some(token::own()?),
+    let token = if options.no_token {
+        None
+    } else {
+        Some(token::own()?)
     };
     let known = FOXGLOVE.iter().map(|origin| (*origin).to_owned());
     let admission = Admission {

@@ -157,9 +157,10 @@ pub(super) fn text(graph: &Graph) -> String {
     for arrow in &graph.arrows {
         let colour = colour(graph.processes[arrow.from].stage);
         let (wire, [x, y]) = layout.wire(graph, arrow);
-        let [thick, opacity] = match graph.sent(arrow).rate_hz > 0.0 {
-            true => [1.6, 1.0],
-            false => [1.0, 0.4],
+        let [thick, opacity] = if graph.sent(arrow).rate_hz > 0.0 {
+            [1.6, 1.0]
+        } else {
+            [1.0, 0.4]
         };
         writeln!(
             text,

@@ -1,4 +1,5 @@
-//! Touching and transfer, on the head as the device drew it: films are parted, blended and given back as on the processor.
+//! Touching and transfer on the device's drawing of the head: distribution, blending and return of films agree with the
+//! processor's.
 
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_dab::device::probe::{Probe, Prober};
@@ -12,10 +13,10 @@ use maulstick_model::interface::{Handling, Step, Sweep, Transfer};
 use crate::device;
 use crate::scene::{PAINTS, Scene, lying};
 
-/// Share of the counts that may differ: where a sum that rounds otherwise decides whether a unit goes.
+/// Tolerated share of differing counts, where the rounding of a sum decides about a unit.
 const FEW: f64 = 2e-4;
 
-/// The device's drawing as the processor's; of the fixed footprint, whose strips do not move.
+/// The device's drawing in the processor's form, for a fixed footprint, whose strips do not move.
 fn as_drawn(probe: &Probe) -> Drawn {
     let stride = probe.size[0].next_multiple_of(16);
     let cells = stride * probe.size[1];
@@ -44,7 +45,7 @@ fn as_drawn(probe: &Probe) -> Drawn {
     drawn
 }
 
-/// Blends of the fixed footprint as the processor does them, the drawing's stages left out.
+/// The processor's blends of the fixed footprint, without drawing.
 fn blend(probe: &Probe, step: &mut Step<'_>, seed: u64) {
     let mut raster = Raster::default();
     raster.drawn = as_drawn(probe);
@@ -69,7 +70,7 @@ fn blend(probe: &Probe, step: &mut Step<'_>, seed: u64) {
     }
 }
 
-/// How many counts on cells and films of two scenes differ, of how many, and how many of a third one do.
+/// Number of differing counts on cells and films of two scenes, and of all counts.
 fn apart(one: &Scene, two: &Scene) -> (usize, usize) {
     let (mut off, mut all) = (0, 0);
     for slot in 0..SLOTS {
@@ -111,9 +112,9 @@ fn paint_goes_both_ways_in_whole_units() {
             let scene = || {
                 let mut scene = Scene::far(seed, 5.0);
                 scene.handling = handling;
-                // Nothing comes from inside the brush.
+                // No refill from inside the brush.
                 scene.traits.refill = 0.0;
-                // One more paint on the brush than on the canvas, and the other way about.
+                // One more paint on the brush than on the canvas, and vice versa.
                 (0..PAINTS + 2).for_each(|slot| {
                     scene.window.plane_mut(slot);
                 });

@@ -1,4 +1,4 @@
-//! The device beside the processor.
+//! The device compared with the processor.
 
 use maulstick_stokes::flow::Effort;
 use maulstick_stokes::rheology::Paint;
@@ -16,8 +16,8 @@ fn scenes() -> [Scene; 4] {
     ]
 }
 
-/// Of the fastest velocity. The processor leaves out layers of air, so its coarse grids are others: both are solved until
-/// what is left is rounding.
+/// Tolerance relative to the fastest velocity. The processor leaves out layers of air, so its coarse grids differ: both
+/// are solved down to rounding.
 const TOLERANCE: f64 = 1e-5;
 const EFFORT: Effort = Effort {
     steps: 20,
@@ -36,7 +36,7 @@ fn worst(scene: &Scene, tuning: &Tuning) -> f64 {
 #[test]
 fn the_device_has_the_processors_velocities() {
     for scene in scenes() {
-        // Where one workgroup does all levels, some and the coarsest alone.
+        // One workgroup does all levels, some, and the coarsest alone.
         for rest in [u32::MAX, Tuning::default().rest, 0] {
             let tuning = Tuning {
                 rest,
@@ -48,7 +48,7 @@ fn the_device_has_the_processors_velocities() {
     }
 }
 
-/// A weight in a shader that is wrong by a hundredth.
+/// A seeded fault: a weight in a shader that is wrong by a hundredth.
 #[test]
 fn a_fault_would_be_found() {
     for scene in scenes() {

@@ -130,12 +130,13 @@ impl PaintingEdit for Dry {
 
     fn check_idle(&self) -> Result<(), ValueError> {
         // Over a time all that is wet dries.
-        match self.over.is_some() && self.share != Share::WHOLE {
-            true => Err(ValueError::Idle {
+        if self.over.is_some() && self.share != Share::WHOLE {
+            Err(ValueError::Idle {
                 option: "a share below 1",
                 with: "a time over which all wet paint dries".to_owned(),
-            }),
-            false => Ok(()),
+            })
+        } else {
+            Ok(())
         }
     }
 }
@@ -162,9 +163,10 @@ mod cli {
         read: |matches| {
             let DryOrStop { dry, stop } = clap::FromArgMatches::from_arg_matches(matches)?;
             let surface = dry.surface;
-            Ok(match stop {
-                true => StopDrying { surface }.into(),
-                false => dry.into(),
+            Ok(if stop {
+                StopDrying { surface }.into()
+            } else {
+                dry.into()
             })
         },
     };

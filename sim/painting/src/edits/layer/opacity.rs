@@ -82,10 +82,10 @@ pub struct Opacity {
 }
 
 fn named<'de, D: serde::Deserializer<'de>>(from: D) -> Result<LayerRef, D::Error> {
-    match from.is_human_readable() {
-        true => <LayerName as serde::Deserialize>::deserialize(from)
-            .map(|name| LayerRef::Named { name }),
-        false => serde::Deserialize::deserialize(from),
+    if from.is_human_readable() {
+        <LayerName as serde::Deserialize>::deserialize(from).map(|name| LayerRef::Named { name })
+    } else {
+        serde::Deserialize::deserialize(from)
     }
 }
 

@@ -35,9 +35,10 @@ impl Form for StopDrying {
 
 impl PaintingEdit for StopDrying {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        match painting.clock.stop(Some(self.surface)) {
-            true => Ok(Applied::Done),
-            false => Err(EditError::NotDrying),
+        if painting.clock.stop(Some(self.surface)) {
+            Ok(Applied::Done)
+        } else {
+            Err(EditError::NotDrying)
         }
     }
 

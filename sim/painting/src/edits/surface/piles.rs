@@ -40,9 +40,10 @@ fn last_of(word: &str) -> Result<bool, ValueError> {
 }
 
 fn lasts<'de, D: Deserializer<'de>>(from: D) -> Result<bool, D::Error> {
-    match from.is_human_readable() {
-        true => last_of(&String::deserialize(from)?).map_err(serde::de::Error::custom),
-        false => bool::deserialize(from),
+    if from.is_human_readable() {
+        last_of(&String::deserialize(from)?).map_err(serde::de::Error::custom)
+    } else {
+        bool::deserialize(from)
     }
 }
 

@@ -49,9 +49,10 @@ pub(crate) fn handling_of(scene: &Scene, brush: &str, surface: u32) -> Handling 
         BrushMode::Sampler => (false, Transfer::Sampler),
         BrushMode::Vacuum => (false, Transfer::Vacuum),
     };
-    let most = match handling.most_m > 0.0 && surface != PALETTE {
-        true => (handling.most_m / QUANTUM_M) as f32,
-        false => CELL_MAX as f32,
+    let most = if handling.most_m > 0.0 && surface != PALETTE {
+        (handling.most_m / QUANTUM_M) as f32
+    } else {
+        CELL_MAX as f32
     };
     Handling {
         push,

@@ -130,9 +130,10 @@ impl PaintingBrush {
             return;
         }
         let head = Arc::new(Head::of(&thinned));
-        let finer = match head.strips() > self.tidy.strips() {
-            true => &head,
-            false => &self.tidy,
+        let finer = if head.strips() > self.tidy.strips() {
+            &head
+        } else {
+            &self.tidy
         };
         self.load = Arc::new(self.load.onto(head.strips(), finer));
         (self.kept, self.thinned, self.tidy) = (None, thinned, head);

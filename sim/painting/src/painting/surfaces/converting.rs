@@ -162,9 +162,12 @@ impl Painting {
 
 /// A tile of converted paint: pages that did not change are those of before.
 fn assembled(tile: &Tile, converted: Converted, pager: &Arc<Pager>) -> Tile {
-    let page = |page: &Page<Planes>, planes: Planes| match *page.get() == planes {
-        true => page.clone(),
-        false => Page::new(pager, Arc::new(planes), Some(page)),
+    let page = |page: &Page<Planes>, planes: Planes| {
+        if *page.get() == planes {
+            page.clone()
+        } else {
+            Page::new(pager, Arc::new(planes), Some(page))
+        }
     };
     let stack = tile.dry();
     let layers: Vec<&DryLayer> = stack.into_iter().flat_map(|stack| stack.layers()).collect();
@@ -179,12 +182,13 @@ fn assembled(tile: &Tile, converted: Converted, pager: &Arc<Pager>) -> Tile {
         .iter()
         .zip(&changed)
         .all(|(one, other)| one.planes.is(&other.planes));
-    let dry = match same {
-        true => stack.cloned(),
-        false => changed
+    let dry = if same {
+        stack.cloned()
+    } else {
+        changed
             .into_iter()
             .rev()
-            .fold(None, |below, layer| Some(DryStack::over(below, layer))),
+            .fold(None, |below, layer| Some(DryStack::over(below, layer)))
     };
     // The wet page comes after the links: what dries of it from now on is a layer of its own.
     let wet = tile.wet_page();

@@ -47,9 +47,10 @@ impl Painting {
             let (surface, own) = (&mut self.scene.surfaces[on], &mut self.surfaces[on]);
             let tooth =
                 (&surface.tooth, surface.tooth_seed) != (&material.tooth, material.tooth_seed);
-            let model = match material.model.is_empty() {
-                true => own.model,
-                false => model_called(&material.model).unwrap_or(own.model),
+            let model = if material.model.is_empty() {
+                own.model
+            } else {
+                model_called(&material.model).unwrap_or(own.model)
             };
             let is_model = std::ptr::eq(model, own.model);
             let is_ground = surface.ground == material.ground;

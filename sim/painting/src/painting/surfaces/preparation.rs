@@ -35,13 +35,14 @@ impl Preparation {
     /// Traits of a brush on it; one that is stirred is used to take paint up.
     pub(crate) fn traits(&self, traits: BrushTraits, transfer: Transfer) -> BrushTraits {
         let stirred = matches!(transfer, Transfer::Paint | Transfer::Sponge);
-        match self.fills && stirred {
-            true => BrushTraits {
+        if self.fills && stirred {
+            BrushTraits {
                 refill: 1.0 - maulstick_num::powf(1.0 - DIP, f64::from(traits.cell_per_reference)),
                 cell_per_reference: STIRRED * traits.cell_per_reference,
                 ..traits
-            },
-            false => traits,
+            }
+        } else {
+            traits
         }
     }
 }

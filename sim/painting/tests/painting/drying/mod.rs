@@ -45,10 +45,7 @@ proptest! {
         for share in &shares {
             let share = *share;
             let region = "5,5,20x10".parse().expect("a region");
-            let command = match part {
-                true => dry(share, "", Some(region)),
-                false => dry(share, "", None),
-            };
+            let command = if part { dry(share, "", Some(region)) } else { dry(share, "", None) };
             // All may be dry already.
             sequencer.edit(command).ok();
             prop_assert_eq!(both(counts(&mut sequencer)), paint);
