@@ -200,7 +200,7 @@ pub fn run_given(matches: &ArgMatches) -> Result<(), UserError> {
     Err(if error.kind() == std::io::ErrorKind::NotFound {
         let (build, install) = (command.how_to_build(), command.how_to_install());
         UserError::failure(format!(
-            "`{typed}` is a program of its own, which is not built"
+            "`{typed}` is a separate program, which is not built"
         ))
         .help(format!(
             "in the folder of the sources: {build}; where maulstick is installed: {install}"

@@ -155,7 +155,7 @@ fn unopened(error: &eframe::Error) -> UserError {
                 Ok(value) => format!("{name}={value}"),
                 Err(_) => format!("{name} is not set"),
             };
-            UserError::usage("the display of the window is not there")
+            UserError::usage("the window has no display")
                 .at(format!("{}, {}", said("DISPLAY"), said("WAYLAND_DISPLAY")))
                 .help("set one of them; without a window: `maulstick up --headless`")
         }

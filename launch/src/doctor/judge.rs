@@ -132,10 +132,10 @@ fn display(display: &Display) -> Finding {
             "neither WAYLAND_DISPLAY nor DISPLAY is set: the window cannot open",
             "start it from a terminal of a graphical session, or without a window: maulstick up --headless",
         ),
-        (Some(server), Ok(true)) => Finding::ok(CHECK, format!("{server} tells of pens")),
+        (Some(server), Ok(true)) => Finding::ok(CHECK, format!("{server} reports pens")),
         (Some(server), Ok(false)) => Finding::warning(
             CHECK,
-            format!("{server} tells nothing of pens: a pen paints as a mouse"),
+            format!("{server} does not report pens: a pen paints like a mouse"),
             "give its tablet to the rig: maulstick device add",
         ),
         (Some(_), Err(error)) => Finding::warning(

@@ -127,7 +127,7 @@ pub(super) fn take(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, UserE
     if loads.as_ref().is_some_and(Vec::is_empty) {
         return Err(keys
             .fault("loads", "a list of no loads does nothing")
-            .help("leave it out: the brush paints on with what it has"));
+            .help("leave it out: the brush continues with its own paint"));
     }
     let mixture = |text: &str| keys.named("loads", None, mixture_of(text, library));
     let loads = loads.unwrap_or_default().into_iter().map(mixture);
@@ -272,7 +272,7 @@ pub(super) fn light(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError>
     let keys = step.due(step.keys.table("light")?)?;
     if keys.keys().is_empty() {
         return Err(UserError::usage(
-            "a light of which nothing is said changes nothing",
+            "a step of the light without a setting changes nothing",
         ));
     }
     let given = keys.keys();

@@ -161,8 +161,8 @@ impl<'a> Easel<'a> {
                         .to_owned(),
                 ),
                 _ => (
-                    format!("{times} steps cannot be taken back: {there} can be"),
-                    format!("{{ undo = {there} }} takes all of them back"),
+                    format!("{times} steps cannot be undone: only {there} can"),
+                    format!("{{ undo = {there} }} undoes all of them"),
                 ),
             };
             return Err(UserError::usage(what).help(help));

@@ -95,7 +95,7 @@ impl DocumentError {
                 "while it is open, ask again in a second; once it is closed, recover from the file before it what is whole"
             }
             Self::OpenHere | Self::Companion => "give another name",
-            Self::Taken => "give another name: nothing is written over",
+            Self::Taken => "give another name: an existing file is never replaced",
             Self::Vanished(_) => "save it under another name now: until then it is in memory alone",
             Self::Other(_) => "check the path and the disk",
         };

@@ -25,7 +25,7 @@ pub enum Choice {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GpuError {
     /// No adapter of the requested kind.
-    #[error("there is no graphics adapter that would do: {0}")]
+    #[error("no suitable graphics adapter: {0}")]
     None(String),
     /// The device was lost, or does not respond.
     #[error("it was lost: {0}")]
@@ -190,7 +190,7 @@ impl Device {
         }
         if refusals.is_empty() {
             refusals.push(match choice {
-                Choice::Auto => "none is a graphics processor of its own".to_owned(),
+                Choice::Auto => "all are emulated by the processor".to_owned(),
                 Choice::Forced => "no driver is installed".to_owned(),
             });
         }

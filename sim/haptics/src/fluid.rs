@@ -85,7 +85,9 @@ impl Fluid {
             return Err("a number is not finite");
         }
         if scale < 0.0 || drives(&jacobian) {
-            return Err("the force grows with the hand's velocity: paint would push the hand on");
+            return Err(
+                "the force grows with the hand's velocity: paint would accelerate the hand",
+            );
         }
         if message.time_to_live_ns > ContactModel::TIME_TO_LIVE_MOST_NS
             || message.recovery_ns > ContactModel::RECOVERY_MOST_NS

@@ -232,7 +232,7 @@ fn wavelengths(
     let first = nm.partition_point(|nm| *nm <= 380.0).saturating_sub(1);
     let last = nm.partition_point(|nm| *nm < 780.0).min(nm.len() - 1);
     let usual = Prior::measured().map_err(|error| {
-        MeasureError::new(error.to_string(), "the program is broken: build it anew")
+        MeasureError::new(error.to_string(), "the program is broken: rebuild it")
     })?;
     let at = |i: usize| {
         let observe = |sample| observation(sample, i, &surface);

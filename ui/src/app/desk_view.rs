@@ -51,7 +51,7 @@ impl DeskView {
         let bus = Arc::clone(&connection.bus);
         let presenter = Presenter::new(bus, &connection.topics, me, &state.device);
         self.presenter = presenter
-            .inspect_err(|error| tracing::warn!("frames are not told of: {error}"))
+            .inspect_err(|error| tracing::warn!("frames cannot be reported: {error}"))
             .ok();
         let completion = self.presenter.as_ref().map(Presenter::completion);
         let source = Source {

@@ -99,7 +99,7 @@ impl Sending {
         let oldest = [self.barrier.oldest_ns(), self.dispatcher.oldest_ns()];
         let since_ns = oldest.into_iter().flatten().min();
         if let Err(error) = self.pending.send(now_ns, since_ns) {
-            tracing::warn!("the brushes are not told what is pending: {error}");
+            tracing::warn!("pending settings cannot be sent to the brushes: {error}");
         }
         if self.barrier.is_waiting() || since_ns.is_some() {
             context.request_repaint_after(BARRIER_LOOK);

@@ -55,7 +55,7 @@ pub(crate) fn found(path: &Path) -> Dropped {
         Err(error) => {
             return nothing(
                 tr!("{name} cannot be read: {error}", name, error),
-                tr!("See that it is there and that you may read it."),
+                tr!("Check that it exists and that you may read it."),
             );
         }
     };
@@ -104,7 +104,7 @@ fn brush(path: &Path, name: &str) -> Dropped {
     };
     Dropped::Nothing {
         what: tr!("{name} is no brush that can be used: {wrong}", name, wrong),
-        help: tr!("Brushes are files as docs/brushes.md says.").to_owned(),
+        help: tr!("docs/brushes.md describes brush files.").to_owned(),
     }
 }
 

@@ -189,8 +189,8 @@ impl Files {
     fn save(&mut self, work: &mut PanelContext<'_>) {
         let Some(node) = &work.rig.live.paint else {
             work.notifications.fault(
-                tr!("nothing is known of the painting yet"),
-                tr!("wait for the painting engine: it comes back by itself"),
+                tr!("the painting is not loaded yet"),
+                tr!("wait until the painting engine has restarted"),
             );
             return;
         };

@@ -160,7 +160,7 @@ impl NewPainting {
         }
         if !path.parent().is_some_and(Path::is_dir) {
             return Err(tr!(
-                "There is no folder {folder}. Write one that is there.",
+                "There is no folder {folder}. Enter an existing one.",
                 folder = paths::shown(path.parent().unwrap_or(Path::new("/")))
             ));
         }

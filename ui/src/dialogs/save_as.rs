@@ -56,7 +56,7 @@ impl SaveAs {
         }
         if !path.parent().is_some_and(Path::is_dir) {
             return Err(tr!(
-                "There is no folder {folder}. Write one that is there.",
+                "There is no folder {folder}. Enter an existing one.",
                 folder = paths::shown(path.parent().unwrap_or(Path::new("/")))
             ));
         }
@@ -79,7 +79,7 @@ impl SaveAs {
         let mut taken = None;
         let answer = dialog::show(context, tr!("Save under another name"), |ui| {
             ui.weak(tr!(
-                "History and versions go along, and the painting goes on in the new file."
+                "History and versions are kept, and painting continues in the new file."
             ));
             ui.add_space(4.0);
             taken = self.browser.show(ui, tr!("File"));

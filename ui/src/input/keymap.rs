@@ -194,7 +194,7 @@ impl Keymap {
             .collect();
         (!entries.is_empty()).then(|| {
             tr!(
-                "The preferences have keys that are not known, or named twice: {entries}",
+                "The preferences have keys that are unknown or used twice: {entries}",
                 entries = entries.join(", ").replace('\n', " ")
             )
         })

@@ -36,7 +36,7 @@ impl Picture {
         let image = Image::open_within(path, MOST_BYTES).map_err(|error| match error {
             ImportError::File(error) => {
                 tr!(
-                    "It cannot be read: {error}. See that it is still there.",
+                    "It cannot be read: {error}. Check that the file still exists.",
                     error
                 )
             }

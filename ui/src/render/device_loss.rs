@@ -46,7 +46,7 @@ impl DeviceLoss {
     fn lose(&self, words: &str) {
         let words = words.trim();
         let mut why = if words.is_empty() {
-            "its driver does not say why".to_owned()
+            "its driver gives no reason".to_owned()
         } else {
             words.to_owned()
         };

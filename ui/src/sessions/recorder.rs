@@ -57,9 +57,12 @@ pub(super) fn poll(
     match result {
         Ok(()) => notifications.note(tr!("The recording is in {file}.", file)),
         Err(fault) => {
-            let help = fault
-                .help
-                .unwrap_or_else(|| tr!("What came before is in {file}. Record anew.", file));
+            let help = fault.help.unwrap_or_else(|| {
+                tr!(
+                    "The earlier part is in {file}. Start a new recording.",
+                    file
+                )
+            });
             notifications.fault(fault.what, help);
         }
     }
@@ -74,7 +77,7 @@ pub(super) fn notify(event: &RecorderEvent, notifications: &mut Notifications) {
             cause: Continuation::JournalBroke,
         } => {
             let file = paths::shown(file);
-            notifications.note(tr!("The recording goes on in {file}.", file));
+            notifications.note(tr!("The recording continues in {file}.", file));
         }
         RecorderEvent::PaintingUnavailable(trouble) => {
             let why = match trouble {

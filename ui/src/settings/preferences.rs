@@ -178,7 +178,7 @@ impl Preferences {
         };
         let mut preferences: Self = toml::from_str(&text).map_err(|error| {
             UserError::failure(tr!(
-                "the window's habits cannot be read; it begins with new ones"
+                "the window's habits cannot be read; it begins with the defaults"
             ))
             .at(format!("{}: {}", path.display(), error.message()))
         })?;

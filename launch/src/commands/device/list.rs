@@ -181,7 +181,7 @@ fn in_rig(used: Option<&[RigDevice]>) -> String {
     let row = |used: &RigDevice| -> Row {
         let state = match (used.trouble.as_str(), used.is_there) {
             ("", true) => "in use",
-            ("", false) => "does not run: the rig's terminal says why",
+            ("", false) => "does not run: see its messages in the rig's terminal",
             (trouble, _) => trouble,
         };
         let own = &used.section;

@@ -141,7 +141,7 @@ impl Info<'_> {
         }
         let merged = match self.painting.history().merged() {
             0 | 1 => String::new(),
-            merged => format!(", the oldest of them {merged} in one"),
+            merged => format!(", the {merged} oldest merged into one"),
         };
         let (undo, redo) = self.painting.history_depth();
         say!("history   {undo} steps to undo, {redo} to redo{merged}");

@@ -115,7 +115,7 @@ fn list(scene: &Scene, as_json: bool) -> Result<i32, UserError> {
         return Ok(0);
     }
     if scene.versions.is_empty() {
-        say!("no versions yet: --keep NAME keeps the painting as it is");
+        say!("no versions yet: --keep NAME adds one of the current painting");
     }
     let roots = scene
         .versions

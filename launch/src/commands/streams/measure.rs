@@ -149,7 +149,7 @@ fn ms<const N: usize>(times: &Distribution, shares: [f64; N]) -> [String; N] {
 fn shown(traffic: &Traffic, measure: Measure) -> String {
     let streams: Vec<Row<'_>> = traffic.streams().collect();
     if streams.is_empty() {
-        return "nothing came: `maulstick node list` lists who is there\n".into();
+        return "no message arrived: `maulstick node list` lists the running nodes\n".into();
     }
     match measure {
         Measure::Topics => {

@@ -166,7 +166,7 @@ impl ExportOptions {
             .partition(|(_, topic)| is_one || topic.table.is_ok());
         for topic in unread.values() {
             say!(
-                "without {}: nothing here tells how its messages are read",
+                "without {}: the schema of its messages is not in this recording",
                 topic.name
             );
         }

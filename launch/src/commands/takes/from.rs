@@ -192,7 +192,7 @@ impl Source {
         };
         match next {
             Some(next) => {
-                format!("it is {length_s:.1} s long, and the recording goes on in {next}")
+                format!("it is {length_s:.1} s long, and the recording continues in {next}")
             }
             None => format!("it is {length_s:.1} s long"),
         }

@@ -29,16 +29,16 @@ pub(super) fn render_session(
     let sizes = [&painting.memory, &painting.history, &painting.record];
     let is_sized = sizes.iter().any(|size| size.is_some());
     if painting.kit != KitOptions::default() || painting.model.is_some() || is_sized {
-        return Err(UserError::usage("a session is painted with what it was painted with")
+        return Err(UserError::usage("a session is painted with its own brushes and paints")
             .help("leave out canvas, brush, loads, paints, light, model and sizes: only --profile, --gamut, --backend, --document and --ledger apply"));
     }
     let export = export(&config.view, "--profile, --gamut")?;
     let folder = tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
     let path = match &options.document {
         Some(path) if presence(path, painting)? == Presence::There => {
-            return Err(UserError::usage("a session has a painting of its own")
+            return Err(UserError::usage("a session has its own painting")
                 .at(path.display().to_string())
-                .help("give a name that is not there yet"));
+                .help("give the name of a new file"));
         }
         Some(path) => path.clone(),
         None => folder.path().join(PAINTING),

@@ -140,7 +140,7 @@ fn begun(
     if is_path(&canvas.ground) && !Path::new(canvas.ground.as_str()).is_absolute() {
         return Err(
             UserError::usage("the path of the ground does not begin at the root")
-                .help("give the whole path, for each program has a folder of its own"),
+                .help("give the whole path, because each program has its own working folder"),
         );
     }
     let section = &mut config.canvas;

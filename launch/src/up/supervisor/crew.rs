@@ -148,7 +148,7 @@ impl Crew {
         } else {
             Exit::Fails(
                 UserError::failure(format!("node '{name}' does not stay up")).help(
-                    "its own messages above say why; three failures in ten seconds are the limit",
+                    "its messages above give the reason; three failures in ten seconds are the limit",
                 ),
             )
         }

@@ -106,7 +106,7 @@ impl FolderWatch {
         }
         self.sockets.look().unwrap_or_else(|error| {
             if !std::mem::replace(&mut self.unkept, true) {
-                tracing::warn!("the sockets of the rig cannot be looked after: {error}");
+                tracing::warn!("the folder of the rig's sockets cannot be watched: {error}");
             }
             SocketNews::default()
         })

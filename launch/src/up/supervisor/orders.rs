@@ -178,7 +178,7 @@ pub(super) fn is_same(one: &Path, other: &Path) -> bool {
 pub(super) fn starts_again() -> Outcome {
     Outcome::refused(
         "the paint node is being started just now",
-        "wait until the painting is there, and ask again",
+        "wait until the painting is open, then repeat the command",
     )
 }
 

@@ -58,7 +58,7 @@ impl Supervisor {
     fn order(&mut self, asked: &CommandRequest, now: Instant) -> Result<Outcome, UserError> {
         if asked.after.is_some() {
             return Err(UserError::usage("the rig has no journal in which to wait")
-                .help("ask without a place in it"));
+                .help("send the command without a position in the journal"));
         }
         let command = match &asked.command {
             Command::Rig(command) => command,

@@ -359,7 +359,7 @@ fn ended_as_it_saved(to: &Path) -> Outcome {
             "the paint node ended before it said that the painting is in {}",
             to.display()
         ),
-        "look whether that file has it, and open it there; the messages of the rig say what was wrong",
+        "check whether that file has it, and open it there; the messages of the rig give the reason",
     )
 }
 

@@ -15,8 +15,8 @@ use crate::file::path::resolved;
 /// Number of bytes read at once.
 const PIECE: usize = 1 << 20;
 
-/// A file that is read beside SQLite. It is opened once it is locked, and closed after SQLite has closed it: when any file
-/// descriptor of it is closed, the system drops all locks that this process has on it.
+/// A separate handle of the file beside SQLite's. It is opened once the file is locked, and closed after SQLite has
+/// closed it: closing any file descriptor of it drops all locks of this process on the file.
 #[derive(Debug)]
 pub(crate) struct Probe {
     file: File,
@@ -24,14 +24,14 @@ pub(crate) struct Probe {
 }
 
 impl Probe {
-    /// A probe of a painting that this process has locked; none where it cannot be opened.
+    /// A probe of a painting locked by this process; `None` where it cannot be opened.
     pub(crate) fn new(path: &Path) -> Option<Self> {
         let path = resolved(path);
         let file = File::open(&path).ok()?;
         Some(Self { file, path })
     }
 
-    /// The error of the disk where bytes of the painting or its journal cannot be read, else the error as it is.
+    /// The disk's error where bytes of the painting or its journal cannot be read, otherwise `error`.
     pub(crate) fn judged(&self, error: DocumentError) -> DocumentError {
         if !matches!(error, DocumentError::Damaged(_)) {
             return error;
@@ -68,11 +68,11 @@ mod tests {
     #[test]
     fn a_file_whose_bytes_cannot_be_read_is_a_fault_of_the_disk() {
         let folder = tempfile::tempdir().expect("a folder");
-        // A folder is opened as a file is, and each read of it fails (EISDIR).
+        // A folder can be opened as a file, and each read of it fails (EISDIR).
         let probe = Probe::new(folder.path()).expect("opened");
         let judged = probe.judged(damaged());
         assert!(matches!(judged, DocumentError::Disk(_)), "{judged:?}");
-        // Only damage is judged.
+        // Only damage is probed.
         let judged = probe.judged(DocumentError::Full);
         assert!(matches!(judged, DocumentError::Full), "{judged:?}");
     }

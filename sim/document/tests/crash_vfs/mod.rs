@@ -1,12 +1,12 @@
-//! What a power cut leaves of a database: a VFS that writes down what SQLite does to its files, and
-//! the files as they may stand after a power cut at any point of that.
+//! Databases after a power cut: a VFS that logs SQLite's operations on its files, and the possible files after a power
+//! cut at any point of the log.
 //!
-//! Of each file everything before its last sync is there, and deletions before the directory's. Of
-//! what came since, any part may be: each write is there, is not, or is there in some of its sectors
-//! of 512 bytes; truncations and deletions are there or not. That some writes are missing and later ones are not is the same as
-//! their having been reordered. Bytes beside a write are never hurt, which is what SQLite's
-//! `SQLITE_IOCAP_POWERSAFE_OVERWRITE` supposes and the unix VFS promises. Sources: "Atomic Commit In
-//! SQLite", <https://sqlite.org/atomiccommit.html>, section 2; "How SQLite Is Tested", section 3.3.
+//! Everything before a file's last sync survives, and deletions before the directory's. Any part of the later
+//! operations may survive: each write entirely, not at all, or in some of its sectors of 512 bytes; truncations and
+//! deletions entirely or not at all. A missing write before a surviving one is equivalent to reordering. Bytes beside a
+//! write are never damaged, which is the assumption of SQLite's `SQLITE_IOCAP_POWERSAFE_OVERWRITE` and the promise of
+//! the unix VFS. Sources: "Atomic Commit In SQLite", <https://sqlite.org/atomiccommit.html>, section 2; "How SQLite Is
+//! Tested", section 3.3.
 
 #![allow(
     dead_code,
@@ -34,29 +34,29 @@ pub(crate) enum FileKind {
     Journal,
 }
 
-/// What SQLite did to a file.
+/// An operation of SQLite on a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Deed {
     Write {
         offset: u64,
         bytes: Vec<u8>,
     },
-    /// To so many bytes.
+    /// Truncation to a number of bytes.
     Truncate(u64),
     Sync,
     Delete,
-    /// The directory is synced: the deletions of all its files so far.
+    /// The directory is synced: all deletions of its files so far.
     SyncDirectory,
 }
 
-/// A deed and the file it was done to.
+/// An operation and its file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Op {
     pub(crate) file: FileKind,
     pub(crate) deed: Deed,
 }
 
-/// What SQLite did to the files of one database, in order, over any number of connections.
+/// SQLite's operations on the files of one database, in order, over any number of connections.
 #[derive(Debug, Clone)]
 pub(crate) struct Log(Arc<Mutex<Recorded>>);
 
@@ -67,7 +67,7 @@ struct Recorded {
     refused: Refused,
 }
 
-/// What is refused of a database's main file.
+/// Refused operations on a database's main file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Refused {
     Nothing,
@@ -75,13 +75,13 @@ pub(crate) enum Refused {
     Writes,
     /// To be opened.
     Opening,
-    /// What is read, of the main file and its log.
+    /// Reads of the main file and its log.
     Reads,
-    /// All that is read, written, cut or synced, of the main file and its log: a disk that fails.
+    /// All reads, writes, truncations and syncs of the main file and its log: a failing disk.
     Everything,
 }
 
-/// The files of a database; none for one that is not there.
+/// Files of a database; `None` for an absent one.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Image {
     pub(crate) main: Vec<u8>,
@@ -89,10 +89,9 @@ pub(crate) struct Image {
     pub(crate) journal: Option<Vec<u8>>,
 }
 
-/// Logs what SQLite does to the database at `main` in connections that are opened through the VFS
-/// [`VFS`]. What stands there already counts as synced. The VFS offers no shared memory for a database
-/// that is watched, so a WAL needs `locking_mode = EXCLUSIVE` before it; one that nobody watches has
-/// the default VFS's files.
+/// Logs SQLite's operations on the database at `main` in connections opened through the VFS [`VFS`]. Its current
+/// contents count as synced. The VFS offers no shared memory for a watched database, so a WAL needs `locking_mode =
+/// EXCLUSIVE` before it; an unwatched one uses the default VFS's files.
 pub(crate) fn watch(main: &Path) -> Log {
     shim::register(shim::Rank::Named);
     let log = Log(Arc::new(Mutex::new(Recorded {
@@ -104,20 +103,20 @@ pub(crate) fn watch(main: &Path) -> Log {
     log
 }
 
-/// As [`watch`], and from now on every connection of this process that names no VFS goes through
-/// [`VFS`]: for code that opens its databases itself.
+/// [`watch`], with [`VFS`] for every later connection of this process that names no VFS: for code that opens its
+/// databases itself.
 pub(crate) fn watch_by_default(main: &Path) -> Log {
     shim::register(shim::Rank::Default);
     watch(main)
 }
 
 impl Log {
-    /// The point after the latest operation: how many there have been.
+    /// Number of operations so far.
     pub(crate) fn point(&self) -> usize {
         self.recorded().ops.len()
     }
 
-    /// Refuses this from now on.
+    /// Refuses these operations from now on.
     pub(crate) fn refuse(&self, refused: Refused) {
         self.recorded().refused = refused;
     }
@@ -133,14 +132,13 @@ impl Log {
         self.recorded().ops.clone()
     }
 
-    /// The files as a power cut after the first `point` operations may leave them. `random` decides
-    /// how much of what was not synced is there: nothing, everything, or each operation by a coin of
-    /// some bias.
+    /// Possible files after a power cut after the first `point` operations. `random` decides about the unsynced ones:
+    /// none, all, or each by a coin of some bias.
     pub(crate) fn image(&self, random: &mut impl Rng, point: usize) -> Image {
         self.image_with(random, point, |_| true)
     }
 
-    /// As [`image`](Self::image), of a disk that does not sync when it is told to.
+    /// [`image`](Self::image) of a disk that does not sync when requested.
     pub(crate) fn image_of_a_liar(&self, random: &mut impl Rng, point: usize) -> Image {
         self.image_with(random, point, |deed| *deed != Deed::Sync)
     }
@@ -185,7 +183,7 @@ impl Log {
 }
 
 impl Image {
-    /// Writes the files into `dir`, the main file as `name`; those of an earlier image go.
+    /// Writes the files into `dir`, the main file as `name`; those of an earlier image are removed.
     pub(crate) fn write_to(&self, dir: &Path, name: &str) {
         std::fs::write(dir.join(name), &self.main).expect("the main file is written");
         for (suffix, bytes) in [("-wal", &self.wal), ("-journal", &self.journal)] {
@@ -234,7 +232,7 @@ fn cut(random: &mut impl Rng, content: Option<Vec<u8>>, deeds: &[&Deed]) -> Opti
                 let mut coin = || random.next_u32() % 4 < bias;
                 apply(&mut content, deed, |_| coin());
             }
-            // The name still stands for the old file: what went to a new one is lost with it.
+            // The name still refers to the old file: data in a new one are lost with it.
             Deed::Delete if !is_there => break,
             _ if is_there => apply(&mut content, deed, |_| true),
             _ => {}
@@ -243,7 +241,7 @@ fn cut(random: &mut impl Rng, content: Option<Vec<u8>>, deeds: &[&Deed]) -> Opti
     content
 }
 
-/// Does `deed` to a file, a write only in the sectors for which `sector` says so.
+/// Applies an operation to a file; of a write only the sectors selected by `sector`.
 fn apply(content: &mut Option<Vec<u8>>, deed: &Deed, mut sector: impl FnMut(usize) -> bool) {
     match deed {
         Deed::Write { offset, bytes } => {

@@ -1,5 +1,5 @@
-//! The VFS itself: hands everything on to the default one and logs what changes a file. "The SQLite
-//! OS Interface or VFS", <https://sqlite.org/vfs.html>.
+//! The VFS itself: it passes everything to the default one and logs changes of files. "The SQLite OS Interface or VFS",
+//! <https://sqlite.org/vfs.html>.
 
 #![allow(
     unsafe_code,
@@ -21,7 +21,7 @@ pub(super) const NAME: &CStr = c"crash";
 /// The main files that are watched.
 static WATCHED: Mutex<Vec<(PathBuf, Log)>> = Mutex::new(Vec::new());
 
-/// Whether connections that name no VFS get this one.
+/// Rank of the VFS among those of connections that name none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Rank {
     Named,
@@ -39,8 +39,8 @@ struct CrashFile {
 struct Watched {
     file: FileKind,
     log: Log,
-    /// Whether the unix VFS syncs the directory, too, with the next sync: it does with the first of
-    /// each log or journal that it opens (`UNIXFILE_DIRSYNC` in SQLite's `os_unix.c`).
+    /// True if the unix VFS also syncs the directory with the next sync: it does with the first of each log or journal
+    /// that it opens (`UNIXFILE_DIRSYNC` in SQLite's `os_unix.c`).
     syncs_directory: bool,
 }
 
@@ -76,7 +76,7 @@ static METHODS: ffi::sqlite3_io_methods = ffi::sqlite3_io_methods {
     xUnfetch: None,
 };
 
-/// Registers the VFS, again with another rank if need be.
+/// Registers the VFS, again with another rank if necessary.
 pub(super) fn register(rank: Rank) {
     static VFS: OnceLock<Vfs> = OnceLock::new();
     let mut is_new = false;
@@ -106,7 +106,7 @@ pub(super) fn register(rank: Rank) {
     }
 }
 
-/// Logs what is done to the database at `main` from now on into `log`.
+/// Logs later operations on the database at `main` into `log`.
 pub(super) fn watch(main: &Path, log: &Log) {
     let name = main.file_name().expect("a file's name");
     let dir = main.parent().filter(|dir| !dir.as_os_str().is_empty());
@@ -117,7 +117,7 @@ pub(super) fn watch(main: &Path, log: &Log) {
     watched.push((main, log.clone()));
 }
 
-/// Who watches the file that SQLite calls `name`.
+/// Watcher of the file that SQLite calls `name`.
 ///
 /// # Safety
 /// `name` is null or a string.
@@ -153,7 +153,7 @@ unsafe fn inner(file: *mut ffi::sqlite3_file) -> *mut ffi::sqlite3_file {
     unsafe { file.cast::<CrashFile>().add(1).cast() }
 }
 
-/// Writes down what was done to `file`, if it was done.
+/// Logs an operation on `file`, if it succeeded.
 ///
 /// # Safety
 /// `file` was opened by [`open`].

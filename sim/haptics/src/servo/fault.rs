@@ -18,7 +18,7 @@ impl std::fmt::Display for Fault {
         f.write_str(match self {
             Self::NotANumber => "a reading or a force was not a number",
             Self::TooFast => "the hand was faster than its limit",
-            Self::Oscillation => "the hand shook, however soft the force was made",
+            Self::Oscillation => "the hand kept shaking at the softest force",
             Self::UnknownState => "the saved force state cannot be read, so force is switched off",
         })
     }

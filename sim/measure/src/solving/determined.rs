@@ -77,9 +77,9 @@ pub fn warnings(
         if rms > TOO_MUCH {
             let (most, nm) = worst[j];
             let remedy = if name == white {
-                "add readings of it by itself".to_owned()
+                "add readings of it alone".to_owned()
             } else {
-                format!("add readings of it by itself, and mixed 1:1 and 1:10 with '{white}'")
+                format!("add readings of it alone, and mixed 1:1 and 1:10 with '{white}'")
             };
             warnings.push(format!(
                 "'{name}' is ill-determined: its tints may be off by {rms:.2} in reflectance \

@@ -23,7 +23,7 @@ pub fn check_links(measured: &Measurements, white: usize) -> Result<(), MeasureE
         {
             let (column, _) = measured.headings.paints[place];
             let what = format!("no sample holds '{name}'");
-            let help = "measure it by itself and mixed with the white, or delete its column";
+            let help = "measure it alone and mixed with the white, or delete its column";
             return Err(MeasureError::new(what, help)
                 .line(measured.heading_line)
                 .column(column, name));

@@ -25,7 +25,7 @@ pub struct Paint {
     pub s: Spectrum,
 }
 
-/// Name of the thinner, which every palette has: a medium that absorbs and scatters nothing.
+/// Name of the thinner, which every palette has: a medium without absorption and scattering.
 pub const THINNER: &str = "Thinner";
 
 impl Paint {
@@ -287,11 +287,9 @@ impl PaintLibrary {
         })
     }
 
-    /// Checks that a mixture's shares are right and its paints exist, and spells their names as the
-    /// file does.
+    /// Checks that a mixture's shares are valid and its paints exist, and spells their names like the file.
     ///
-    /// # Errors
-    /// [`PaintError::Mixture`] or [`PaintError::Unknown`].
+    /// # Errors [`PaintError::Mixture`] or [`PaintError::Unknown`].
     pub fn check(&self, mixture: &Mixture) -> Result<Mixture, PaintError> {
         mixture.check()?;
         let mut mixture = mixture.clone();

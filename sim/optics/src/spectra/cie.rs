@@ -27,7 +27,7 @@ pub struct Illuminant {
 /// A light has power at this many of the samples or more: the most that a rule takes.
 const NARROWEST: usize = 16;
 
-/// A light by which no colours are seen.
+/// Errors of a light under which no colours are visible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DarkError {
     /// Too few wavelengths.
@@ -35,7 +35,7 @@ pub enum DarkError {
         "the light has power at {0} of the 101 wavelengths from 380 to 780 nm, 4 nm apart; colours take {NARROWEST}"
     )]
     Narrow(usize),
-    /// A response that it does not excite.
+    /// A cone response that it does not excite.
     #[error("the light leaves one of X, Y and Z dark, so no colour is seen by it")]
     Response,
 }

@@ -181,7 +181,7 @@ impl PresetRows {
         let edit = TextEdit::singleline(&mut self.name)
             .hint_text(tr!("Sky wash"))
             .desired_width(190.0);
-        let hover = tr!("What the brush in the hand, its settings and its paint are to be called.");
+        let hover = tr!("Name of a preset of the brush in hand, its settings and its paint.");
         let shown = labelled::named(ui, tr!("Name"), hover, edit);
         if shown.changed() {
             self.wrong = None;

@@ -125,7 +125,7 @@ impl HistoryPanel {
                     ui.add(eframe::egui::Label::new(title).truncate());
                     if version.here {
                         ui.label(RichText::new(tr!("here")).small())
-                            .on_hover_text(tr!("What is painted now goes on from this version"));
+                            .on_hover_text(tr!("Painting continues from this version"));
                     }
                 });
                 ui.horizontal(|ui| self.buttons(ui, work, name));
@@ -141,7 +141,7 @@ impl HistoryPanel {
                 ui,
                 tr!("Yes"),
                 &tr!("Delete {name}", name),
-                tr!("It cannot be had back"),
+                tr!("This cannot be undone"),
             );
             if yes.clicked() {
                 ask(work, VersionName::new(name).map(|name| Forget { name }));

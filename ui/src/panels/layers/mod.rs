@@ -64,9 +64,7 @@ impl Panel for LayersPanel {
         let is_coming = self.is_coming(now_s, &layers, work);
         ui.horizontal(|ui| {
             ui.checkbox(&mut work.rig.show_wet, tr!("Highlight wet paint"))
-                .on_hover_text(tr!(
-                    "Wet paint is shown under a tint, so that it is told from dry paint"
-                ));
+                .on_hover_text(tr!("Tints wet paint, to distinguish it from dry paint"));
             if is_coming {
                 let layout = Layout::right_to_left(Align::Center);
                 ui.with_layout(layout, |ui| ui.spinner())

@@ -38,7 +38,7 @@ impl SetRows {
         let edit = TextEdit::singleline(&mut self.name)
             .hint_text(tr!("Portrait"))
             .desired_width(190.0);
-        let hover = tr!("What the paints on the palette are to be called as a set.");
+        let hover = tr!("Name of the set of the paints on the palette.");
         let field = labelled::named(ui, tr!("Name"), hover, edit);
         if field.changed() {
             self.wrong = None;
@@ -83,7 +83,7 @@ impl SetRows {
                 }
             }
             let renew = ui.button(tr!("Renew"));
-            let hover = tr!("The set becomes what lies on the palette now.");
+            let hover = tr!("The set becomes the paints on the palette.");
             if renew.on_hover_text(hover).clicked() {
                 let name = work.preferences.brushes.paint_sets[place].name.clone();
                 work.preferences.brushes.paint_sets[place] = PaintSet::of(&name, &work.wells());

@@ -118,7 +118,7 @@ fn the_devices_of_a_rig_are_listed_with_their_trouble() {
             "left        pen     main   0         in use",
             "right       pen     main   0         it is unplugged",
             "arm         pen     main   0         there is no libHD.so",
-            "cup         pen     main   0         does not run: the rig's terminal says why",
+            "cup         pen     main   0         does not run: see its messages in the rig's terminal",
         ]
     );
     assert!(in_rig(Some(&[])).contains("no device"));

@@ -61,7 +61,7 @@ fn count_or_all<'de, D: Deserializer<'de>>(from: D) -> Result<Option<u32>, D::Er
         return from.deserialize_any(CountOrAll);
     }
     match Option::<u32>::deserialize(from)? {
-        Some(0) => Err(D::Error::custom("no layer is to be made wet")),
+        Some(0) => Err(D::Error::custom("no layer is chosen")),
         layers => Ok(layers),
     }
 }
