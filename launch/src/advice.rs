@@ -2,7 +2,7 @@
 
 use maulstick_types::command::advice::Advice;
 
-/// What to do about it on a command line; `None` where the general words do.
+/// Remedy on a command line; `None` where the general words suffice.
 #[must_use]
 pub fn words(advice: &Advice) -> Option<String> {
     let words = match advice {

@@ -1,8 +1,8 @@
-//! Commands that programs beside this one carry out: those of `tools/`, which `./run` does not build, and anybody's.
+//! Commands in programs beside this one: those of `tools/`, which `./run` does not build, and others.
 //!
-//! As with cargo, `maulstick NAME …` runs the program `maulstick-NAME` that lies beside this one, with its own command line.
-//! A program of `tools/` may have commands of several groups: each of its commands stands in [`COMMANDS`], and so in the
-//! help of its group.
+//! As with cargo, `maulstick NAME …` runs the program `maulstick-NAME` in the same folder, with its own command line. A
+//! program of `tools/` may have commands of several groups: each of its commands is listed in [`COMMANDS`], and so in
+//! the help of its group.
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -123,17 +123,17 @@ pub const COMMANDS: [BesideCommand; 17] = [
 const LINE: &str = "line";
 
 impl BesideCommand {
-    /// The command as it is typed.
+    /// The command as typed.
     fn typed(&self) -> String {
         format!("maulstick {}", self.path.join(" "))
     }
 
-    /// How the program comes to lie beside this one.
+    /// Instruction for building the program beside this one.
     fn how_to_build(&self) -> String {
         format!("cargo build --release -p {}", self.package)
     }
 
-    /// How it comes to lie beside one that is installed.
+    /// Instruction for installing it beside an installed one.
     fn how_to_install(&self) -> String {
         let name = self.package.trim_start_matches("maulstick-");
         let parent = if self.package == BENCH {
@@ -144,7 +144,7 @@ impl BesideCommand {
         format!("cargo install --path {parent}/{name}")
     }
 
-    /// Definition for help and completions: it takes whatever the program takes.
+    /// Definition for help and completions, with any arguments.
     fn definition(&self) -> clap::Command {
         let name = self.path.last().copied().unwrap_or_default();
         let line = Arg::new(LINE)
@@ -210,10 +210,9 @@ pub fn run_given(matches: &ArgMatches) -> Result<(), UserError> {
     })
 }
 
-/// Runs the program of somebody else for a command that is unknown here; otherwise ends this one with the error.
+/// Runs another program for a command that is unknown here; otherwise exits with the error.
 ///
-/// # Errors
-/// A [`UserError`] where the program cannot be started.
+/// # Errors A [`UserError`] where the program cannot be started.
 pub fn run_unknown(error: &clap::Error) -> Result<i32, UserError> {
     let mut line = std::env::args_os().skip(1);
     if let (ErrorKind::InvalidSubcommand, Some(ContextValue::String(name)), Some(first)) = (
@@ -266,10 +265,9 @@ pub fn tool<C: Subcommand>(carry_out: impl FnOnce(&C) -> Result<i32, UserError>)
     finish(done.map_err(|fault| fault.worded(advice::words)))
 }
 
-/// Has unfinished files removed when a signal ends this process.
+/// Removes unfinished files when a signal ends this process.
 ///
-/// # Errors
-/// A [`UserError`] where signals cannot be watched.
+/// # Errors A [`UserError`] where signals cannot be watched.
 pub fn clear_files_on_signals() -> Result<(), UserError> {
     clear_on_signals(EXIT_INTERRUPTED)
         .map_err(|error| UserError::failure(format!("cannot watch for signals: {error}")))

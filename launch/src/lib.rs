@@ -3,42 +3,42 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`cli`] | the command line |
-//! | [`commands`] | what its subcommands do |
-//! | [`beside`] | commands of programs that lie beside this one |
+//! | [`commands`] | its subcommands |
+//! | [`beside`] | commands in programs beside this one |
 //! | [`up`] | the supervisor |
 //! | [`processes`] | the processes of a rig |
 //! | [`page`] | pictures made of patches, pictures and words |
 //! | [`plot`] | curves over two axes |
-//! | [`destination`] | the display or file that colours go to: profile and gamut |
+//! | [`destination`] | the display or file for colours: profile and gamut |
 //! | [`viewing`] | options of light, observer and rule |
 //! | [`swatch`] | colours in the terminal |
 //! | [`backend`] | backend of the paint's steps |
-//! | [`cells`] | the side of the cells that pictures are painted with |
-//! | [`doctor`] | what of this machine keeps a rig from painting well |
+//! | [`cells`] | side of a picture's cells |
+//! | [`doctor`] | obstacles to good painting on this machine |
 //! | [`document`] | paintings in files |
-//! | [`easel`] | a painting at which a script is followed |
+//! | [`easel`] | a painting for the steps of a script |
 //! | [`duration`], [`ground`], [`tooth`] | times, grounds and teeth as a painter names them |
 //! | [`kit`] | setup of a take: embedded into it, and extracted from it |
 //! | [`lamp`] | changes of the light |
-//! | [`memory`] | memory that a command allocates at once |
-//! | [`picture`] | pictures that a command reads |
-//! | [`outputs`] | files that are written; none replaces one that is read |
-//! | [`runtime`] | the tokio runtime of commands that wait for many things at once |
-//! | [`script`] | a day at the easel, a step after the other |
+//! | [`memory`] | memory allocated by a command at once |
+//! | [`picture`] | pictures read by a command |
+//! | [`outputs`] | output files, none of which replaces an input |
+//! | [`runtime`] | the tokio runtime of commands that wait for several events |
+//! | [`script`] | a script: steps of painting, one after the other |
 //! | [`paintings`] | the bundled paintings |
-//! | [`panics`] | panics as errors that a user can read |
+//! | [`panics`] | panics as readable errors |
 //! | [`performance`] | setup that `render` and `up --play` share: take, brush, loads, canvas |
 //!
 //! # The rig
 //!
 //! - One program runs as every process. The launcher starts, watches and ends them, and restarts what fails. A frozen
-//!   brush or paint is ended after 4.5 s; one that works or waits for a disk has longer; while the launcher stood still
-//!   itself, its clocks did too. A start that the system does not allow is tried again, later each time.
-//! - When paint, brush or player of a take dies, all three start afresh and the take is played from its start, as fast
-//!   as it can up to where it was.
-//! - Devices come and go in a running rig: the launcher checks one within the whole of the settings, writes those and
-//!   starts or ends one daemon. Renaming is both orders, with the force's state carried over. Brush nodes read
-//!   priorities and laws of force when the file changes.
+//!   brush or paint is ended after 4.5 s; one that works or waits for a disk has longer; the launcher's clocks stop
+//!   while it is itself stopped. A start that the system refuses is retried after growing pauses.
+//! - When paint, brush or player of a take dies, all three restart and the take is played from its start, as fast as
+//!   possible up to its earlier position.
+//! - Devices can be added and removed in a running rig: the launcher checks the settings with the change, writes them
+//!   and starts or ends one daemon. Renaming does both, and keeps the force's state. Brush nodes read priorities and
+//!   laws of force when the file changes.
 //! - Another painting is checked on another thread; the paint node then ends and starts with other settings, which
 //!   counts as no crash. Another file of the same painting needs no new node.
 //! - A rig with a window and no file begins a sketch in the user's state folder, a document like any other. The newest
@@ -47,13 +47,13 @@
 //!
 //! # Tasks and threads
 //!
-//! `up`, the recorder and `recording replay` wait on a tokio runtime for processes, signals, messages, orders and times at
-//! once. What blocks (a painting that is checked or saved, loads, the keys of a terminal, a recording that is read ahead)
-//! is on the runtime's threads for that. The supervisor itself stays on the main thread: the kernel kills a node when the
+//! `up`, the recorder and `recording replay` wait on a tokio runtime for processes, signals, messages, orders and times
+//! at once. Blocking work (checking or saving a painting, loads, the keys of a terminal, reading a recording ahead) is
+//! on the runtime's blocking threads. The supervisor itself stays on the main thread: the kernel kills a node when the
 //! thread that started it ends. Threads of this crate's own are:
 //!
 //! - `bridge`, and `viewer` for each viewer of `topic bridge`: sockets that block;
-//! - one that `doctor` tries a real-time priority with, which the thread would keep.
+//! - one on which `doctor` tries a real-time priority, which the thread would keep.
 //!
 //! # Recordings
 //!
@@ -62,7 +62,7 @@
 //!   beginning.
 //! - `recording replay --rate max` sends as the brushes have credit; with `--at` it puts a motion down live under the name
 //!   `motion`, so it is undone like any stroke.
-//! - `topic bridge` serves JSON of what is watched only. `topic graph` reads zenoh's administration space.
+//! - `topic bridge` serves JSON of watched topics only. `topic graph` reads zenoh's administration space.
 
 pub mod advice;
 pub mod beside;

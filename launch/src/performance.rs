@@ -1,4 +1,4 @@
-//! Setup that `render` and `up --play` share: the take, the brush, the loads, the canvas.
+//! Setup shared by `render` and `up --play`: the take, the brush, the loads, the canvas.
 
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,7 @@ use crate::cells::{check_canvas, parse_cell_mm};
 use crate::ground::GroundFile;
 use crate::viewing::illuminant;
 
-/// What is painted with, and on.
+/// Tools and canvas of a painting.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
 pub struct KitOptions {
     /// Size of the canvas in cells, such as 1024x1024
@@ -50,7 +50,7 @@ pub struct KitOptions {
     pub no_adapt: bool,
 }
 
-/// Options of a painting. What they leave open is as the take embeds it, else as rig.toml says.
+/// Options of a painting. Absent ones come from the take, else from rig.toml.
 #[derive(Args, Clone, Debug, Default)]
 pub struct PaintingOptions {
     /// Brush, canvas, loads and light.
@@ -80,10 +80,9 @@ pub struct PaintingOptions {
     pub ledger: Option<PathBuf>,
 }
 
-/// The brush file of a section, at its size, as [`maulstick_device::brush_file`] has it.
+/// The brush file of a section, at its size, by [`maulstick_device::brush_file`].
 ///
-/// # Errors
-/// A [`UserError`] for an unknown kind or a bad file, with advice on its format.
+/// # Errors A [`UserError`] for an unknown kind or an invalid file, with advice on its format.
 pub fn brush_file(section: &BrushSection) -> Result<BrushFile, UserError> {
     maulstick_device::brush_file(section).map_err(of_a_brush)
 }
@@ -118,10 +117,9 @@ pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
 }
 
 impl KitOptions {
-    /// Puts size, cells, brush, paints and light into the rig's settings, and returns the brush's section.
+    /// Writes size, cells, brush, paints and light into the rig's settings, and returns the brush's section.
     ///
-    /// # Errors
-    /// A [`UserError`] for an unknown brush, with the nearest name, and for too many cells.
+    /// # Errors A [`UserError`] for an unknown brush, with the nearest name, and for too many cells.
     pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, UserError> {
         if let Some(cell_mm) = self.cell_mm {
             config.canvas.cell_mm = cell_mm;
@@ -212,10 +210,9 @@ impl PaintingOptions {
         model.or_else(|| self.kit.for_a_new_one())
     }
 
-    /// As [`KitOptions::apply`], with memory, history, record, backend and paint model.
+    /// [`KitOptions::apply`] with memory, history, record, backend and paint model.
     ///
-    /// # Errors
-    /// As there, and for invalid sizes.
+    /// # Errors As there, and for invalid sizes.
     pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, UserError> {
         if let Some(memory) = &self.memory {
             config.paint.memory.clone_from(memory);
@@ -297,8 +294,7 @@ fn light(section: &LightSection) -> Result<Light, UserError> {
     Ok(light)
 }
 
-/// Paints of the wells: as the settings say. Without wells in the settings, the painter's own paints lie in them in the
-/// order of their file.
+/// Paints of the wells, from the settings; without wells there, the painter's own paints in the order of their file.
 fn wells(config: &RigConfig, library: &PaintLibrary) -> Vec<String> {
     let default = RigConfig::default().palette.wells;
     let wells = &config.palette.wells;

@@ -1,4 +1,4 @@
-//! `maulstick brush`: the brushes of the library, and one spine tried out by itself.
+//! `maulstick brush`: the brushes of the library, and trials of a single spine.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};

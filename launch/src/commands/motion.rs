@@ -29,7 +29,7 @@ pub struct HeldHead {
 }
 
 impl HeadOptions {
-    /// The head that a take is painted with: the one that it embeds, or that of a new rig.
+    /// The head for painting a take: its embedded one, or that of a new rig.
     pub fn of(self, take: &Take, path: &Path) -> Result<HeldHead, UserError> {
         let file = held_brush(take, path).map_err(of_a_brush)?;
         let length_m = self.given_m()?.unwrap_or_else(|| file.length_m());
@@ -49,7 +49,7 @@ impl HeadOptions {
         Ok(self.head_mm.map(|mm| 1e-3 * mm))
     }
 
-    /// As [`of`](Self::of), its length; 0 where only pens are in the take, whose points are their own.
+    /// The length from [`of`](Self::of); 0 where the take has only pens, which have a point of their own.
     pub fn length_m(self, take: &Take, path: &Path) -> Result<f64, UserError> {
         let is_pen = |pose: &StylusPose| matches!(pose, StylusPose::Contact { .. });
         if take.samples.iter().all(|taken| is_pen(&taken.sample.pose)) {
@@ -67,7 +67,7 @@ pub fn refused(path: &Path) -> impl Fn(MotionError) -> UserError {
     }
 }
 
-/// Reads `X,Y`, mm.
+/// Parses `X,Y`, mm.
 pub fn parse_place(text: &str) -> Result<[f64; 2], String> {
     let number = |part: &str| part.trim().parse::<f64>().ok().filter(|mm| mm.is_finite());
     text.split_once(',')

@@ -1,9 +1,9 @@
-//! `maulstick doctor`: what of this machine keeps a rig from painting well, and the command that mends it.
+//! `maulstick doctor`: obstacles to good painting on this machine, each with a remedy.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`facts`] | what the machine is |
-//! | [`judge`] | what is right and wrong with it |
+//! | [`facts`] | facts about the machine |
+//! | [`judge`] | verdicts about it |
 
 mod facts;
 mod judge;
@@ -24,10 +24,9 @@ pub struct DoctorOptions {
     json: bool,
 }
 
-/// Prints what is found; the exit code is 1 where something is wrong.
+/// Prints the findings; the exit code is 1 where something is wrong.
 ///
-/// # Errors
-/// A [`UserError`] where it cannot be printed.
+/// # Errors A [`UserError`] where it cannot be printed.
 pub fn run(options: &DoctorOptions) -> Result<i32, UserError> {
     let findings = judge(&Facts::of_this_machine());
     if options.json {

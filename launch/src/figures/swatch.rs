@@ -24,7 +24,7 @@ impl Terminal {
         }
     }
 
-    /// A block of `cells` characters with a space behind it; nothing in plain text.
+    /// A block of `cells` characters followed by a space; empty in plain text.
     #[must_use]
     pub fn block(self, [r, g, b]: [u8; 3], cells: usize) -> String {
         match self {

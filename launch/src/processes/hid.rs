@@ -30,8 +30,7 @@ pub(crate) struct HidOptions {
 }
 
 pub(super) fn run(options: &HidOptions) -> Result<i32, UserError> {
-    // Beside the device's own daemon a recorder is a device by itself: two of them move no brush twice,
-    // for one alone has it at a time.
+    // Beside the device's own daemon a recorder acts as a separate device; only one of them moves a brush at a time.
     let beside = options.record.is_some() && options.node.node.is_none();
     let name = if beside {
         format!("{}{RECORDER}", options.device)

@@ -26,15 +26,15 @@ use crate::outputs::UsedFile;
 use crate::performance::{brush_file, mixture_of, refused};
 use crate::tooth::ToothPicture;
 
-/// Lean of a stroke's handle for which nothing is said, degrees.
+/// Default lean of a stroke's handle, degrees.
 const LEAN_DEG: f64 = 25.0;
-/// Speed of a stroke for which nothing is said, mm/s.
+/// Default speed of a stroke, mm/s.
 const SPEED_MM_S: f64 = 120.0;
 /// No point of a stroke is farther from the canvas's corner, mm.
 const FARTHEST_MM: f64 = 5000.0;
 /// No stroke takes longer, s.
 const LONGEST_S: f64 = 600.0;
-/// Reads an edit. Its paints are spelt as the library does.
+/// Reads an edit. Its paints are spelt like the library's.
 pub(super) fn edit<E: Form>(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, UserError> {
     if step.kind.form.switch {
         switched_on(step)?;
@@ -136,7 +136,7 @@ pub(super) fn take(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, UserE
     Ok(Act::Take(take, loads))
 }
 
-/// Range of a key's number; what else is given is refused.
+/// Range of a key's number; other values are rejected.
 fn within(
     step: &Step<'_>,
     key: &str,
@@ -214,7 +214,7 @@ pub(super) fn stroke(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError
     Ok(Act::Stroke(stroke))
 }
 
-/// True if a name refers to something stored in a painting: only the painting can tell.
+/// True if a name refers to something stored in a painting, which alone can check it.
 fn is_held(name: &str) -> bool {
     name.starts_with(IMAGE) || name.starts_with(SPECTRUM)
 }

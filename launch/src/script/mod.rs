@@ -1,4 +1,4 @@
-//! A script: a day at the easel, a step after the other.
+//! A script: steps of painting, one after the other.
 //!
 //! ```toml
 //! step = [
@@ -9,15 +9,16 @@
 //! ]
 //! ```
 //!
-//! `canvas_mm = [200, 160]` before the steps says how large a new canvas is. A step has one key that says what is done, and perhaps others that say how. Paths count from the
-//! script's folder. All of it is read before anything is painted.
+//! `canvas_mm = [200, 160]` before the steps is the size of a new canvas. A step has one key for its action, and
+//! further keys for its options. Paths are relative to the script's folder. The whole script is read before anything is
+//! painted.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | `entries` | keys and what they hold, each with its line |
-//! | `steps` | which steps there are, and what keys each has |
-//! | `acts` | what each step does |
-//! | [`advice`] | what to do about a refusal, in steps |
+//! | `entries` | keys and values, each with its line |
+//! | `steps` | kinds of steps, and the keys of each |
+//! | `acts` | action of each step |
+//! | [`advice`] | remedies of a refusal, in steps |
 //! | [`stroke`] | a stroke written as points |
 
 mod acts;
@@ -54,11 +55,11 @@ use crate::tooth::ToothPicture;
 pub enum Act {
     /// Applies an edit; that of a brush is for the one in hand.
     Edit(Edit),
-    /// Takes up a brush: its name, its file, the share of its head that full pressure presses in.
+    /// Takes up a brush: its name, its file, the depth at full pressure as a share of its head.
     Brush(String, Box<BrushFile>, f64),
     /// Follows a take; its strokes load these mixtures in turn.
     Take(Take, Vec<Mixture>),
-    /// Paints a stroke with what the brush has.
+    /// Paints a stroke with the brush's load.
     Stroke(Stroke),
     /// Gives the canvas the ground of a picture.
     Ground(GroundFile),
@@ -68,7 +69,7 @@ pub enum Act {
     Wait(u32),
     /// Changes the light.
     Light(LightChange),
-    /// Takes so many steps back.
+    /// Undoes a number of steps.
     Undo(u32),
 }
 
@@ -103,10 +104,9 @@ pub struct Script {
 }
 
 impl Script {
-    /// Reads a script, its takes, brushes and pictures.
+    /// Reads a script, with its takes, brushes and pictures.
     ///
-    /// # Errors
-    /// A [`UserError`] with file and line, and what to do.
+    /// # Errors A [`UserError`] with file, line and remedy.
     pub fn read(path: &Path, library: &PaintLibrary) -> Result<Self, UserError> {
         let text = std::fs::read_to_string(path).map_err(|error| {
             let fault = UserError::reading(path, &error);

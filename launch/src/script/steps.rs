@@ -101,7 +101,7 @@ pub(super) static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| {
     kinds
 });
 
-/// A step as it is written.
+/// A step as written.
 #[derive(Debug)]
 pub(super) struct Step<'a> {
     pub(super) kind: &'static Kind,
@@ -109,7 +109,7 @@ pub(super) struct Step<'a> {
 }
 
 impl<'a> Step<'a> {
-    /// A step that does one thing, and whose other keys are that thing's.
+    /// A step with one action and its options.
     fn of(source: Source<'a>, table: &'a DeTable<'a>, start: usize) -> Result<Self, UserError> {
         let all = || {
             KINDS
@@ -192,7 +192,7 @@ impl Kind {
     }
 }
 
-/// The steps of a script as they are written.
+/// The steps of a script as written.
 pub(super) fn listed<'a>(
     source: Source<'a>,
     script: &'a DeTable<'a>,

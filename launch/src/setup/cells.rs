@@ -6,12 +6,12 @@ use maulstick_rig::config::{CanvasSection, RigConfig};
 use maulstick_types::command::slow_canvas::{SLOW_CELL_M, SLOW_CELLS, is_slow};
 use maulstick_types::limits::CELLS_IN_ALL;
 
-/// Side of a cell in pictures, mm. A hand that paints has those of its rig, which are larger, so that a
-/// broad brush keeps up with it.
+/// Side of a cell in pictures, mm. Live painting uses those of its rig, which are larger, so that a broad brush keeps
+/// up with the hand.
 pub const PICTURE_CELL_MM: f64 = 0.125;
-/// Cells whose side may be asked for, mm.
+/// Range of a cell's side, mm.
 const CELLS_MM: std::ops::RangeInclusive<f64> = 0.02..=2.0;
-/// Cells of a canvas either way.
+/// Range of a canvas's cells either way.
 const SIDE: std::ops::RangeInclusive<f64> = 1.0..=65_536.0;
 
 /// The cells of a sheet.
@@ -23,17 +23,16 @@ pub struct SheetCells {
 }
 
 impl SheetCells {
-    /// As asked for, or as in any picture, mm.
+    /// The requested side, or the default of pictures, mm.
     #[must_use]
     pub fn side_mm(self) -> f64 {
         self.cell_mm.unwrap_or(PICTURE_CELL_MM)
     }
 }
 
-/// Reads the side of a cell, mm.
+/// Parses the side of a cell, mm.
 ///
-/// # Errors
-/// What is wrong, and what to choose.
+/// # Errors The fault, and the valid range.
 pub fn parse_cell_mm(text: &str) -> Result<f64, String> {
     let side: f64 = text
         .trim()
@@ -80,10 +79,10 @@ pub fn check_canvas(canvas: &CanvasSection) -> Result<(), UserError> {
     )))
 }
 
-/// Bytes that a cell takes in memory when it is painted on with three paints: their counts, and what is shown.
+/// Memory of a cell painted with three paints, bytes: their counts, and the display.
 const CELL_BYTES: f64 = 3.0 * 4.0 + 14.0;
 
-/// Whether the painter wants a canvas that is slow to paint on.
+/// Decision of the painter about a slow canvas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slowness {
     /// He has said so.
@@ -124,10 +123,9 @@ pub fn check_speed(canvas: &CanvasSection, slowness: Slowness) -> Result<(), Use
     )))
 }
 
-/// Checks that there is memory for a canvas that is in no file. The pages of one in a file leave memory.
+/// Checks that there is memory for a canvas without a file. The pages of one in a file can leave memory.
 ///
-/// # Errors
-/// A [`UserError`] with what it takes.
+/// # Errors A [`UserError`] with the memory needed.
 pub fn check_memory(canvas: &CanvasSection) -> Result<(), UserError> {
     let [width, height] = canvas.cells().map(f64::from);
     let bytes = width * height * CELL_BYTES;

@@ -33,15 +33,14 @@ pub struct Easel<'a> {
     autosave: &'a mut Option<Autosave>,
     begun: Instant,
     bar: ProgressBar,
-    /// Time of the takes, strokes and waits so far, ns.
+    /// Duration of the takes, strokes and waits so far, ns.
     painted_ns: u64,
-    /// Steps done.
+    /// Number of steps done.
     done: u64,
 }
 
 impl<'a> Easel<'a> {
-    /// An easel; what is painted goes to the document of `autosave`, if there is one, and `bar` shows how far
-    /// it is.
+    /// An easel; the painting is saved to the document of `autosave`, if there is one, and `bar` shows the progress.
     pub fn new(offline: Offline, autosave: &'a mut Option<Autosave>, bar: ProgressBar) -> Self {
         Self {
             offline,
@@ -53,10 +52,9 @@ impl<'a> Easel<'a> {
         }
     }
 
-    /// Does the steps of a script, in their order.
+    /// Does the steps of a script, in order.
     ///
-    /// # Errors
-    /// A [`UserError`] with file and line of the step that the painting refuses; those before it are done.
+    /// # Errors A [`UserError`] with file and line of the refused step; those before it are done.
     pub fn follow_script(&mut self, script: Script) -> Result<(), UserError> {
         self.bar.inc_length(script.steps.len() as u64);
         let done = script.steps.into_iter().try_for_each(|(place, act)| {
@@ -138,7 +136,7 @@ impl<'a> Easel<'a> {
         Ok(())
     }
 
-    /// Takes a picture into the painting, and returns its hash.
+    /// Adds a picture to the painting, and returns its hash.
     fn embed(&mut self, bytes: Arc<[u8]>) -> Result<String, UserError> {
         let painting = self.offline.painting_mut();
         let hash = painting.embed(bytes).map_err(refused)?;
@@ -227,7 +225,7 @@ impl<'a> Easel<'a> {
     }
 }
 
-/// Hands what is new to the document, if there is one.
+/// Saves new records to the document, if there is one.
 fn turn(autosave: &mut Option<Autosave>, begun: Instant, sequencer: &mut Sequencer) {
     if let Some(autosave) = autosave {
         autosave.turn(sequencer, begun.elapsed().as_nanos() as u64);

@@ -1,4 +1,4 @@
-//! What a painting begins with: its document, canvas, light, memory and backend.
+//! Setup of a painting: its document, canvas, light, memory and backend.
 
 pub mod backend;
 pub mod cells;

@@ -12,7 +12,7 @@ use maulstick_types::scene::SAMPLES;
 
 use crate::performance::refused;
 
-/// How colours are looked at.
+/// Options of light and observer.
 #[derive(Args, Clone, Debug)]
 pub struct ViewingOptions {
     /// Light: A, D50, D65, FL2, FL8, FL11, or a CSV file with the columns nm and power

@@ -1,5 +1,4 @@
-//! The beginning of a painting's record: the whole painting at the place of its journal from which what was accepted
-//! since can be executed again.
+//! The beginning of a painting's record: the whole painting at the place of its journal from which it can be replayed.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,7 +15,7 @@ use crate::painting::{Named, Painting, Restored};
 use crate::sequencer::Sequencer;
 use crate::snapshot::{PaintingSnapshot, SequencerSnapshot};
 
-/// Bytes of a record at most, unless a painting says otherwise.
+/// Greatest size of a record, bytes, unless a painting sets another.
 pub const RECORD_QUOTA: u64 = 512 << 20;
 
 /// A whole painting at a place of its journal, without the steps that were finished before.
@@ -39,11 +38,10 @@ pub struct Beginning {
 }
 
 impl Beginning {
-    /// The painting as it was then, to accept its records again; `assets` are the pictures and spectra of the painting,
-    /// later ones among them.
+    /// The painting at the beginning, for replaying its records; `assets` are the pictures and spectra of the painting,
+    /// including later ones.
     ///
-    /// # Errors
-    /// [`EditError`] if the stored parts do not fit together.
+    /// # Errors [`EditError`] if the stored parts do not fit together.
     pub fn sequencer(
         self: &Arc<Self>,
         assets: Assets,
@@ -77,10 +75,10 @@ impl Beginning {
 /// Change of a record at a checkpoint.
 #[derive(Clone, Debug)]
 pub enum RecordChange {
-    /// What was accepted since the last checkpoint is added to it.
+    /// Messages accepted since the last checkpoint are added to it.
     Continues,
-    /// It begins anew at the checkpoint.
+    /// A new record begins at the checkpoint.
     Begins(Arc<Beginning>),
-    /// None is kept.
+    /// No record is kept.
     Ends,
 }

@@ -1,4 +1,4 @@
-//! What was committed outlives a power cut, and a check that would not see its loss is none.
+//! Commits survive a power cut, and the check detects their loss.
 
 #[path = "../../document/tests/crash_vfs/mod.rs"]
 mod crash_vfs;
@@ -16,8 +16,7 @@ use rusqlite::{Connection, OpenFlags, params};
 /// Rows of each transaction.
 const ROWS: i64 = 3;
 
-/// What a session committed: for each transaction, from 1 on, the point at which its commit was
-/// called for and the one at which it returned.
+/// Commits of a session: for each transaction, from 1 on, the points of the log at which its commit began and returned.
 struct Session {
     log: Log,
     called: Vec<usize>,
@@ -72,9 +71,8 @@ fn session(synchronous: &str) -> Session {
 }
 
 impl Session {
-    /// What is wrong with an image of the files at `point`: SQLite must open it, find it whole, and
-    /// find in it the rows of all transactions committed by then, and of none that was begun later
-    /// or only in part. A scan must find the same rows.
+    /// The fault of an image of the files at `point`: SQLite must open it, find it whole, and find in it the rows of
+    /// all transactions committed by then, and none of later or partial ones. A scan must find the same rows.
     fn check(&self, image: &Image, point: usize) -> Result<(), String> {
         let dir = tempfile::tempdir().expect("a directory");
         image.write_to(dir.path(), "b.maul");
@@ -122,7 +120,7 @@ impl Session {
         Ok(())
     }
 
-    /// What was wrong after power cuts at 100 points.
+    /// Faults after power cuts at 100 points.
     fn cut_at_random(&self, seed: u64) -> Vec<(usize, String)> {
         let mut random = Pcg32::new(seed, 2);
         let mut wrong = Vec::new();
@@ -198,7 +196,7 @@ fn an_image_without_losses_is_the_files_themselves() {
     assert!(log.point() > 0);
     assert_eq!(log.image(&mut random, log.point()), Image::read_from(&path));
     assert_eq!(log.image(&mut random, 0), Image::default());
-    // What stands when the watch begins counts as synced.
+    // Contents at the beginning of the watch count as synced.
     let again = watch(&path);
     assert_eq!(again.image(&mut random, 0), Image::read_from(&path));
 }

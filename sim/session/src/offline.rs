@@ -1,6 +1,5 @@
-//! The same brush and the same paint in one process, without a bus: what `maulstick render` runs.
-//! The messages that would have crossed the bus are handed on directly, so the painting is the
-//! same, byte for byte.
+//! The same brush and the same paint in one process, without a bus, for `maulstick render`. Messages are passed
+//! directly, so the painting is the same, byte for byte.
 
 use std::sync::mpsc;
 
@@ -16,7 +15,7 @@ use maulstick_types::{Flags, Header, Message as _, Mixture, Origin, name_hash};
 
 use crate::ticker::Ticker;
 
-/// So many states the brush may be ahead of the paint.
+/// Greatest number of states by which the brush may be ahead of the paint.
 const AHEAD: usize = 256;
 
 /// Brush and paint, driven by samples.
@@ -49,10 +48,9 @@ impl Offline {
         Self::resume(Sequencer::new(painting), brush, file, depth_share, loads)
     }
 
-    /// As [`new`](Self::new), over a painting that continues where its sequencer is.
+    /// [`new`](Self::new) with a painting that continues at its sequencer's state.
     ///
-    /// # Errors
-    /// As [`new`](Self::new).
+    /// # Errors As [`new`](Self::new).
     pub fn resume(
         mut sequencer: Sequencer,
         brush: &str,
@@ -86,10 +84,9 @@ impl Offline {
         Ok(offline)
     }
 
-    /// Puts the brush down and takes up another one, with what it carried when it was put down; the take before has ended.
+    /// Puts the brush down and takes up another one, with its last load; the take before has ended.
     ///
-    /// # Errors
-    /// [`EditError`] where the painting refuses it.
+    /// # Errors [`EditError`] where the painting refuses it.
     pub fn take_up(
         &mut self,
         brush: &str,
@@ -122,7 +119,7 @@ impl Offline {
         Ok(())
     }
 
-    /// Samples so far that were faster than a hand (`maulstick_brush::speed_limit`): the brush began anew at each.
+    /// Number of samples faster than a hand (`maulstick_brush::speed_limit`), at each of which the brush restarted.
     #[must_use]
     pub fn too_fast(&self) -> u64 {
         self.too_fast_before + self.model.too_fast()
@@ -144,7 +141,7 @@ impl Offline {
         Ok(applied)
     }
 
-    /// Has the brush follow what the scene says of it.
+    /// Updates the brush from the scene.
     fn follow_scene(&mut self) {
         let scene = self.sequencer.painting_mut().scene();
         self.model.set_scene(scene);
@@ -152,8 +149,8 @@ impl Offline {
         self.model.soak(scene.wetness(&self.brush));
     }
 
-    /// Lets `ticks` sixtieths of a second pass without painting. `each` is called after each second of them where
-    /// something dries; else nothing happens.
+    /// Lets `ticks` sixtieths of a second pass without painting. `each` is called after each second during a drying;
+    /// otherwise nothing happens.
     pub fn wait(&mut self, ticks: u32, mut each: impl FnMut(&mut Sequencer)) {
         let mut left = ticks;
         while left > 0 && self.sequencer.painting().is_drying() {
@@ -240,7 +237,7 @@ impl Offline {
             let (bent, states) = mpsc::sync_channel(AHEAD);
             scope.spawn(move || {
                 for state in samples.iter().enumerate().flat_map(&mut bend) {
-                    // The painter has given up: what is wrong is said there.
+                    // The painter has stopped, and reports its error.
                     if bent.send(state).is_err() {
                         return;
                     }
@@ -311,7 +308,7 @@ impl Painter<'_> {
             sent_ns: event_ns,
         };
         *self.next += 1;
-        // However long a gap is, time passes only for what dries.
+        // However long a gap is, time passes only for a drying.
         let ticks = self.ticker.look(event_ns, u64::MAX);
         let sequencer = &mut *self.sequencer;
         let _ = (0..ticks).try_for_each(|_| {

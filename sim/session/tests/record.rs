@@ -1,5 +1,5 @@
-//! The record of a painting that was painted in its document, closed and continued: executed again it gives the same
-//! paint, and its log says what was done.
+//! Replaying the record of a painting that was painted in its document, closed and continued gives the same paint, and
+//! its log lists the actions.
 
 use std::path::Path;
 
@@ -112,7 +112,7 @@ impl Desk {
     }
 }
 
-/// A painting with strokes, loads, layers, drying, undo and redo, which was closed and continued.
+/// A painting with strokes, loads, layers, drying, undo and redo, closed and continued.
 fn paint(path: &Path) {
     let mut desk = Desk::at(path);
     desk.load("Cobalt Blue=0.7,Titanium White=0.3");

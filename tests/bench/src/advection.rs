@@ -1,5 +1,4 @@
-//! The advection by itself: how fast it goes through its planes, by how fast a plain copy of them does in as
-//! many parts.
+//! The advection alone: its speed relative to a plain copy of its planes in as many parts.
 
 use std::time::Duration;
 

@@ -156,7 +156,7 @@ fn chosen(known: &[DeviceSection], name: &str, client: &Client) -> Result<String
     }
 }
 
-/// All devices that give force: those of rig.toml, present or not, and others that report that they do.
+/// All devices with force: those of rig.toml, connected or not, and others that report force.
 fn all(known: &[DeviceSection], client: &Client) -> Result<Vec<String>, UserError> {
     let own = known.iter().filter(|device| !device.is_hid());
     let mut found: Vec<String> = own.map(|device| device.name.clone()).collect();

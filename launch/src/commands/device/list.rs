@@ -25,10 +25,9 @@ pub struct ListOptions {
     target: Target,
 }
 
-/// Lists what is attached.
+/// Lists the attached devices.
 ///
-/// # Errors
-/// A [`UserError`] where it cannot be printed.
+/// # Errors A [`UserError`] where it cannot be printed.
 pub(super) fn run(options: &ListOptions) -> Result<i32, UserError> {
     if options.udev {
         print_text(&rules(&hid::devices(&Places::here())))?;
@@ -80,7 +79,7 @@ fn in_words(findings: &DeviceListing) -> String {
             service.address,
         ));
     }
-    // What paints already comes before what might.
+    // Devices in use come before possible ones.
     let is_used = is_used(findings);
     let in_rig = in_rig(findings.rig.as_deref());
     let mut text = is_used.then(|| in_rig.clone() + "\n").unwrap_or_default();
@@ -95,7 +94,7 @@ fn in_words(findings: &DeviceListing) -> String {
     {
         text += &nothing(findings);
     } else {
-        // Rather what paints than what moves the canvas.
+        // Prefer a painting device to one that moves the canvas.
         let usable = all().filter(|device| is_usable(device));
         let device = usable.min_by_key(|device| device.driver == Some("spacemouse"));
         text += &device.map(advice).unwrap_or_default();
@@ -134,7 +133,7 @@ fn program(name: &str, driver: &str, at: &str) -> Row {
     [name, "-", at, driver, "found"].map(str::to_owned)
 }
 
-/// Message if there is nothing that a driver fits, but what the rig has in use.
+/// Message if no driver fits any device, apart from those in use.
 fn nothing(findings: &DeviceListing) -> String {
     let folders: Vec<String> = findings
         .openhaptics

@@ -48,7 +48,7 @@ pub struct NewOptions {
     target: Target,
 }
 
-/// Reads `WxH`.
+/// Parses `WxH`.
 fn parse_cm(text: &str) -> Result<[f64; 2], String> {
     let wrong = || format!("'{text}' is not a size in cm such as 40x30");
     let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;

@@ -49,7 +49,7 @@ pub(super) fn run(options: &ConvertOptions) -> Result<i32, UserError> {
     let surface = if options.palette { PALETTE } else { CANVAS };
     let refuse = |error: EditError| refused(error).at(path.display().to_string());
     let model = model_called(&options.model).map_err(refuse)?;
-    // Says so where it is open in another program.
+    // Fails where it is open in another program.
     let (document, opened) = read(path)?;
     let mut surfaces = opened.snapshot().scene.surfaces.iter();
     let has_it = surfaces.any(|own| own.id == surface && own.model == model.name);
@@ -89,7 +89,7 @@ fn converted(
     Ok(applied)
 }
 
-/// Gives a file its name, which no other has.
+/// Gives a file its name, unless that exists.
 fn place(part: &Path, output: &Path) -> Result<(), UserError> {
     let placed = match std::fs::hard_link(part, output) {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {

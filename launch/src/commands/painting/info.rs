@@ -30,10 +30,9 @@ pub struct InfoOptions {
     json: bool,
 }
 
-/// Shows what a painting holds.
+/// Shows the contents of a painting.
 ///
-/// # Errors
-/// A [`UserError`] where it cannot be read, or is damaged.
+/// # Errors A [`UserError`] where it cannot be read, or is damaged.
 pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
     let path = &options.file;
     let mut stats = DocumentStats::read(path).map_err(|error| wrong(path, &error))?;
@@ -72,7 +71,7 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
     Ok(0)
 }
 
-/// What a painting holds.
+/// Contents of a painting.
 struct Info<'a> {
     stats: DocumentStats,
     record: Option<RecordInfo>,

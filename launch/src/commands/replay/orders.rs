@@ -14,10 +14,10 @@ use tokio::task::spawn_blocking;
 const SKIP_S: f64 = 5.0;
 /// Step of a key that changes the strength.
 const STRONGER: f64 = 0.1;
-/// What the keys do.
+/// Help of the keys.
 const KEYS: &str =
     "space: pause   ← →: 5 s   . : next event   + -: faster, slower   0: beginning   q: end";
-/// What the keys do while a hand is guided.
+/// Help of the keys while a hand is guided.
 const GUIDE_KEYS: &str = "space: let go   [ ]: softer, stronger   ← →: 5 s   0: beginning   q: end";
 
 /// Orders as they come.
@@ -26,7 +26,7 @@ pub(super) struct Orders {
     /// True if they are lines of the standard input.
     are_lines: bool,
     orders: Option<UnboundedReceiver<Order>>,
-    /// The terminal as it was.
+    /// The terminal's earlier mode.
     before: Option<Termios>,
 }
 
@@ -52,7 +52,7 @@ impl Orders {
         }
         let (send, orders) = unbounded_channel();
         self.orders = Some(orders);
-        // The system has no other way to wait for either but to block a thread.
+        // The system's only way to wait for either is to block a thread.
         if self.are_lines {
             spawn_blocking(move || read_lines(&send));
         } else if std::io::stdin().is_terminal() {
@@ -144,8 +144,7 @@ fn parse(line: &str) -> Result<Order, String> {
 
 /// A rate within [`RATES`], or `max`.
 ///
-/// # Errors
-/// What is wrong with it.
+/// # Errors The fault.
 pub(super) fn parse_rate(text: &str) -> Result<Rate, String> {
     let rate: Rate = text.parse().map_err(|error: RateError| error.to_string())?;
     match rate {
@@ -158,8 +157,7 @@ pub(super) fn parse_rate(text: &str) -> Result<Rate, String> {
 
 /// A strength from 0 to 1.
 ///
-/// # Errors
-/// What is wrong with it.
+/// # Errors The fault.
 pub(super) fn parse_strength(text: &str) -> Result<f64, String> {
     let strength = text.parse().ok();
     let good = strength.filter(|strength| (0.0..=1.0).contains(strength));

@@ -100,7 +100,7 @@ impl Tables {
         place
     }
 
-    /// A row of a type to be filled in: what is inside it may refer to it.
+    /// Reserves a row for a type, which its fields may refer to before it is complete.
     fn reserve(&mut self) -> usize {
         self.types.push(String::new());
         self.types.len() - 1

@@ -1,4 +1,4 @@
-//! `maulstick topic list`, `hz` and `latency`: what streams carry, measured for some seconds.
+//! `maulstick topic list`, `hz` and `latency`: streams measured for some seconds.
 
 use std::time::Duration;
 
@@ -34,21 +34,20 @@ pub struct MeasureOptions {
     target: Target,
 }
 
-/// What is measured.
+/// Subject of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Measure {
-    /// Which topics there are.
+    /// Topics in use.
     Topics,
-    /// How often messages come, and how many are missing.
+    /// Rates of messages, and numbers of missing ones.
     Rates,
-    /// How long they take.
+    /// Delays of messages.
     Delays,
 }
 
 /// Measures and prints.
 ///
-/// # Errors
-/// A [`UserError`] for a rig that does not run, or a time that is none.
+/// # Errors A [`UserError`] if no rig runs, or for a time out of range.
 pub(super) fn run(options: &MeasureOptions, measure: Measure) -> Result<i32, UserError> {
     let time = duration(options.seconds)?;
     let mut listener = Listener::open(options.target.rig(), &options.topic)?;

@@ -19,7 +19,7 @@ pub(super) struct MessageLine<'a> {
 }
 
 impl MessageLine<'_> {
-    /// As a line of JSON: all of its fields, or those that are asked for, which are null where it has them not.
+    /// As a line of JSON: all of its fields, or the requested ones, null where absent.
     #[must_use]
     pub(super) fn json(&self, fields: &[String]) -> String {
         let value: Json = match fields {
@@ -40,7 +40,7 @@ impl MessageLine<'_> {
         format!("{line}\n")
     }
 
-    /// As a row of a table whose first columns are [`HEAD`]; empty where it has no such field.
+    /// As a row of a table whose first columns are [`HEAD`]; empty where a field is absent.
     #[must_use]
     pub(super) fn row(&self, columns: &[String]) -> String {
         let Header { seq, event_ns, .. } = self.header;

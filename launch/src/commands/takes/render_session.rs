@@ -1,4 +1,4 @@
-//! `maulstick render` of a session: what its painting accepted, accepted again.
+//! `maulstick render` of a session: accepts its records again.
 
 use std::time::Instant;
 
@@ -18,8 +18,8 @@ use crate::performance::{KitOptions, refused};
 
 /// Paints a session.
 ///
-/// # Errors
-/// A [`UserError`] where something is missing in it, for options that do not apply, or where a file cannot be written.
+/// # Errors A [`UserError`] for an incomplete session, for options that do not apply, or where a file cannot be
+/// written.
 pub(super) fn render_session(
     options: &RenderOptions,
     mut session: SessionFile,
@@ -45,7 +45,7 @@ pub(super) fn render_session(
     };
     session.write_painting(&path)?;
     let (document, mut sequencer, since) = open_begin(&path)?;
-    // What is decided here is another entry of the journal.
+    // New decisions would be additional entries of the journal.
     let recorded = RecordedSession::after(&sequencer).until(options.until.unwrap_or(u64::MAX));
     let backend = painting.backend.as_ref().unwrap_or(&config.paint.backend);
     choose_backend(&mut sequencer, backend)?;

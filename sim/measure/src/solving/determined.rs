@@ -1,8 +1,8 @@
-//! Determinacy: are the readings enough for each paint?
+//! Determinacy: tests whether the readings suffice for each paint.
 //!
-//! The inverse of the normal equations is the covariance of ln K, ln S and of the unit. What counts
-//! to a painter is not K or S but the colour of mixtures: a paint is well determined where its
-//! masstone, and its tints 1:1 and 1:10 with the white, are foretold within a small error.
+//! The inverse of the normal equations is the covariance of ln K, ln S and of the unit. The painter cares about the
+//! colour of mixtures, not about K or S: a paint is well determined where its masstone, and its tints 1:1 and 1:10 with
+//! the white, are predicted within a small error.
 
 use crate::measurements::Measurements;
 use crate::wavelength::{Observation, PRIOR_SD, Unknowns, Wavelength, gradient};
@@ -12,8 +12,8 @@ const TRIALS: [f64; 3] = [1.0, 0.5, 1.0 / 11.0];
 /// A standard deviation of a trial's reading, root mean square over the spectrum, that is too much.
 const TOO_MUCH: f64 = 0.02;
 
-/// The number of unknowns that the readings, rather than what was thought before, determine: the
-/// trace of the hat matrix. `None` where the equations are singular.
+/// The number of unknowns determined by the readings rather than the prior: the trace of the hat matrix. `None` where
+/// the equations are singular.
 #[must_use]
 pub fn effective_unknowns(one: &Wavelength<'_>, at: &Unknowns) -> Option<f64> {
     let free = one.free();
@@ -40,7 +40,7 @@ pub fn unit_information(one: &Wavelength<'_>, at: &Unknowns) -> f64 {
     (1.0 / variance - 1.0 / (crate::wavelength::UNIT_SD * crate::wavelength::UNIT_SD)).max(0.0)
 }
 
-/// A sentence for each paint that is ill-determined, with what to measure.
+/// A sentence for each ill-determined paint, with the readings to add.
 #[must_use]
 pub fn warnings(
     measured: &Measurements,
@@ -90,7 +90,7 @@ pub fn warnings(
     warnings
 }
 
-/// Standard deviation of the reading of an opaque mixture, 1 at most.
+/// Standard deviation of the reading of an opaque mixture, at most 1.
 fn deviation(
     shares: &[f64],
     one: &Wavelength<'_>,

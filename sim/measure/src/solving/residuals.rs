@@ -72,7 +72,7 @@ fn predicted(
     }))
 }
 
-/// A sentence for each suspect row, with what to do.
+/// A sentence for each suspect row, with a remedy.
 #[must_use]
 pub fn warnings(residuals: &[Residual], suspects: &[Suspect]) -> Vec<String> {
     let suspects = suspects.iter().map(|suspect| {

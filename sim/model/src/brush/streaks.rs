@@ -1,15 +1,15 @@
-//! Streaks: variation of the paint that bristles take up at a load, so that no two loads paint the same stroke.
+//! Streaks: variation of the paint that bristles take up, so that no two loads paint the same stroke.
 //!
-//! A bristle's share is part its own (its place and kind, from the brush file), part chance of the load: patches where
-//! the heap was touched well or not, and single bristles. The seed is the painting's number of steps, which the journal
-//! has.
+//! A bristle's share is part its own (its place and kind, from the brush file), part random: patches of good and bad
+//! contact with the heap, and single bristles. The seed is the painting's number of steps, which is in the journal.
 
 use maulstick_brush::Head;
 use maulstick_brush::head::disorder::{noise, unit};
 
 /// Share of a bristle's own unevenness that is left beside the chance of a load.
 const OWN: f32 = 0.6;
-/// Chance of patches as wide as this share of half the head, and of single bristles: at most so much of the mean.
+/// Width of random patches, as a share of half the head, and greatest variation of patches and of single bristles, as a
+/// share of the mean.
 const PATCH: f32 = 0.16;
 const PATCHES: f32 = 1.0;
 const SINGLE: f32 = 1.2;

@@ -15,7 +15,7 @@ pub enum Applied {
     Done,
     /// Paint has dried into this layer.
     Dried(Layer),
-    /// Paint dries within so many seconds.
+    /// Paint dries within a number of seconds.
     Drying(f64),
     /// Dry layers are wet again.
     Rewet {
@@ -32,7 +32,7 @@ pub enum Applied {
     Written(String),
     /// A surface has another paint model.
     Converted {
-        /// How near its colours come to those of before.
+        /// Distance of its colours from the old ones.
         distance: Distance,
         /// Side of its cells, m.
         cell_m: f64,
@@ -69,7 +69,7 @@ impl fmt::Display for Applied {
     }
 }
 
-/// How near colours come, where they are the farthest, and why.
+/// Text of the distance of colours, with the place of the greatest, and the reason.
 fn converted(distance: &Distance, cell_m: f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let Some(farthest) = &distance.farthest else {
         return f.write_str("colours as before");

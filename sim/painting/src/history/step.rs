@@ -1,4 +1,4 @@
-//! Steps: what one operation of the painter changed.
+//! Steps: the changes of one operation of the painter.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -93,7 +93,7 @@ pub(crate) fn name_models(materials: &mut [SurfaceMaterial], models: &BTreeMap<u
     named
 }
 
-/// State of a painting besides its tiles, as far as a step can change it.
+/// State of a painting besides its tiles that a step can change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NonTileState {
     /// Loads of the brushes, by name.
@@ -201,7 +201,7 @@ impl Step {
             || self.effects.materials.is_some() && other.effects.materials.is_some()
     }
 
-    /// The step before it was finished, in a painting that is besides as it is in `rest`.
+    /// The step as before it was finished, in a painting whose other state is `rest`.
     #[must_use]
     pub(crate) fn reopened(self, rest: &NonTileState, reached: BTreeSet<TilePlace>) -> OpenStep {
         let mut before = rest.clone();

@@ -31,7 +31,7 @@ const OPAQUE_M: f64 = 0.01;
 /// Paints by slot, and shares of them.
 pub(crate) type SlotShares = Vec<(usize, f64)>;
 
-/// Paints, their look under the light, and the files that grounds and teeth are made of.
+/// Paints, their appearance under the light, and the files of grounds and teeth.
 #[derive(Clone)]
 pub(crate) struct Optics {
     pub(crate) library: PaintLibrary,
@@ -65,7 +65,7 @@ impl Optics {
         Ok(optics)
     }
 
-    /// A surface before anything is painted on it; `relief` is that of before, if it is known.
+    /// An unpainted surface; `relief` is the earlier one, if known.
     pub(crate) fn blank(
         &self,
         surface: &Surface,
@@ -178,13 +178,13 @@ impl Optics {
         })
     }
 
-    /// Takes over the dry layers of a scene.
+    /// Copies the dry layers of a scene.
     pub(crate) fn set_layers(&mut self, scene: &Scene) {
         Arc::make_mut(&mut self.look).set_layers(&scene.layers);
         self.note(scene);
     }
 
-    /// Takes over how strongly relief is embossed where it is part of the colours.
+    /// Copies the strength of the embossed relief, where it is part of the colours.
     fn emboss(&mut self, scene: &Scene) {
         if embosses(scene) {
             Arc::make_mut(&mut self.look).set_relief(scene.light.relief as f32);
@@ -198,7 +198,7 @@ impl Optics {
         self.note(scene);
     }
 
-    /// Notes in the look what it is made of: light, layers, grounds and wells, paints.
+    /// Adds the parts of the appearance to its hash: light, layers, grounds and wells, paints.
     pub(crate) fn note(&mut self, scene: &Scene) {
         let materials = materials(scene);
         let light = Light {
@@ -213,7 +213,7 @@ impl Optics {
             softness: 0.0,
             ..scene.light.clone()
         };
-        // Of the layers only how opaque they are is seen.
+        // Only the opacity of layers is visible.
         let layers = scene.layers.iter();
         let veiled = layers.filter(|layer| layer.opacity != 1.0);
         let veiled: Vec<(u32, f32)> = veiled.map(|layer| (layer.number, layer.opacity)).collect();
@@ -240,10 +240,9 @@ pub(crate) fn thinner_slot(scene: &Scene) -> Option<usize> {
 }
 
 impl Painting {
-    /// Changes the light, without choosing the exposure anew.
+    /// Changes the light, without choosing the exposure again.
     ///
-    /// # Errors
-    /// [`EditError`] for an invalid light.
+    /// # Errors [`EditError`] for an invalid light.
     pub fn relight(&mut self, light: &Light) -> Result<(), EditError> {
         let settings = studio_settings(light)?;
         if changes_colour(light, &self.scene.light) {
@@ -280,7 +279,7 @@ impl Painting {
     }
 }
 
-/// Gives a paint a slot of the studio and of the scene.
+/// Assigns a paint a slot of the studio and of the scene.
 fn paint_slot(studio: &mut Studio, paint: &Paint, file_hash: u32) -> PaintSlot {
     let slot = studio.add(paint);
     let seen = |films: &[(usize, f64)], ground: f64| {

@@ -1,4 +1,4 @@
-//! The record of what was accepted, as far as the painting decides on it.
+//! The painting's part of its record.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::snapshot::SequencerSnapshot;
 pub(crate) struct RecordState {
     /// Most bytes of it; 0 keeps none.
     pub(crate) quota: u64,
-    /// Where it begins, if its document has that.
+    /// Its beginning, if the document has it.
     beginning: Option<Arc<Beginning>>,
     /// True if something happened that cannot be executed again from its beginning.
     is_broken: bool,
@@ -38,14 +38,14 @@ impl RecordState {
         own.chain(named).flatten()
     }
 
-    /// Notes that a step was undone or redone. One of before the beginning is not there when the record is executed again,
-    /// nor is one that became one with others by the room that there was.
+    /// Handles a step that was undone or redone. A step from before the beginning does not exist in a replay, nor does
+    /// one that was merged because of the quota.
     pub(crate) fn turn(&mut self, step: &Step) {
         self.is_broken |= step.operations > 1 && self.beginning.is_some();
         self.go_to(step.id);
     }
 
-    /// Notes that a step was gone to.
+    /// Handles a move to a step.
     pub(crate) fn go_to(&mut self, step: u64) {
         let begun = self.beginning.as_ref();
         self.is_broken |= begun.is_some_and(|begun| step <= begun.painting.step);
@@ -59,7 +59,7 @@ impl Default for RecordState {
 }
 
 impl Painting {
-    /// Limit of the record, bytes; beyond it the record begins anew at the next checkpoint. 0 keeps none.
+    /// Limit of the record, bytes; above it a new record begins at the next checkpoint. 0 keeps none.
     pub fn set_record_quota(&mut self, bytes: u64) {
         self.record.quota = bytes;
     }
@@ -70,13 +70,13 @@ impl Painting {
         self.record.quota
     }
 
-    /// Has the record begin anew at the next checkpoint, as after a change that no accepted message describes.
+    /// Starts a new record at the next checkpoint, as after a change that no accepted message describes.
     pub fn break_record(&mut self) {
         self.record.is_broken = true;
     }
 
-    /// Change of the record at a checkpoint that was just made, of this painting and its sequencer, at a time of the
-    /// wall clock, ms since 1970.
+    /// Change of the record at a checkpoint that was just made of this painting and its sequencer, at a wall-clock
+    /// time, ms since 1970.
     pub fn advance_record(
         &mut self,
         checkpoint: &Checkpoint,

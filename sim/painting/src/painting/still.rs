@@ -1,4 +1,4 @@
-//! A painting as it is at a moment, to be looked at beside the one that is painted on.
+//! A snapshot of a painting, for reading beside the painting itself.
 
 use maulstick_canvas::EditError;
 use maulstick_canvas::tile::{TileId, Version};
@@ -11,8 +11,8 @@ use crate::clock::Clock;
 use crate::history::{Direction, History};
 
 impl Painting {
-    /// The painting as it is, with its versions, without brushes and history. Its tiles are shared with
-    /// this one, whatever becomes of that; to make it takes as long as to count them.
+    /// The current painting, with its versions, without brushes and history. Its tiles are shared with this one,
+    /// whatever happens to it; making it takes as long as counting them.
     pub fn still(&mut self) -> Self {
         self.commit();
         Self {
@@ -29,10 +29,9 @@ impl Painting {
         }
     }
 
-    /// Has a [`still`](Self::still) show the painting as it was in a version.
+    /// Shows the painting of a version in a [`still`](Self::still).
     ///
-    /// # Errors
-    /// [`EditError`] for an unknown version.
+    /// # Errors [`EditError`] for an unknown version.
     pub fn show_version(&mut self, name: &str) -> Result<(), EditError> {
         let version = self.versions.find(name)?.clone();
         for surface in self.surfaces.iter_mut() {
@@ -47,12 +46,12 @@ impl Painting {
         Ok(())
     }
 
-    /// A [`still`](Self::still) as the painting was when the step of this number was done and none after it, 0 for
-    /// before all of them; `None` if there is no such step.
+    /// A [`still`](Self::still) of the painting when the step with this number was the newest done one, 0 for before
+    /// all of them; `None` if there is no such step.
     pub fn still_after(&mut self, step: u64) -> Option<Self> {
         let mut still = self.still();
         if self.history.is_open(step) {
-            // Of steps that are not finished none counts as newer.
+            // Unfinished steps do not count as newer.
             return Some(still);
         }
         let open = self.open_steps();

@@ -1,4 +1,4 @@
-//! The table and the JSON of what is found.
+//! The table and the JSON of the findings.
 
 use std::path::PathBuf;
 
@@ -139,7 +139,7 @@ fn what_the_rig_has_in_use_comes_first_and_is_not_called_nothing() {
     assert!(text.starts_with("in the rig  driver"), "{text}");
     let first = text.split_once("\n\n").map(|(_, below)| below);
     assert!(first.is_some_and(|below| below.starts_with("Nothing else is attached")));
-    // One that has not shown itself paints nothing.
+    // A device that has not appeared does not paint.
     found.rig = Some(vec![RigDevice {
         is_there: false,
         ..pen

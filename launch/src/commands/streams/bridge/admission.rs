@@ -1,5 +1,5 @@
-//! Who may watch a rig: a browser lets every page open a connection to this machine, and every user of the machine reaches
-//! its ports.
+//! Admission of viewers of a rig: a browser lets every page open a connection to this machine, and every user of the
+//! machine reaches its ports.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -17,19 +17,19 @@ pub(super) const FOXGLOVE: [&str; 2] = ["https://app.foxglove.dev", "file://"];
 const LONGEST: usize = 100;
 /// Time in which the same refusal is said once.
 const QUIET: Duration = Duration::from_secs(10);
-/// Most kinds of refusals that are told apart.
+/// Greatest number of distinguished refusals.
 const KINDS: usize = 64;
 
-/// What admits a viewer.
+/// Requirements for a viewer.
 #[derive(Clone, Debug)]
 pub(super) struct Admission {
-    /// The secret that its address has; none is asked for without one.
+    /// The secret in the address; `None` requires none.
     pub token: Option<String>,
     /// Origins of pages that may watch; a program that is no browser has none.
     pub origins: Vec<String>,
 }
 
-/// Why a viewer may not watch.
+/// Reasons to refuse a viewer.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Refusal {
     /// A page of another origin.
@@ -58,10 +58,9 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// Reads an origin as browsers send it: a scheme and a host, with its port.
+/// Parses an origin in the form that browsers send: a scheme and a host, with its port.
 ///
-/// # Errors
-/// What is wrong, in words.
+/// # Errors The fault, in words.
 pub(super) fn origin(text: &str) -> Result<String, String> {
     let is_sound = text.split_once("://").is_some_and(|(scheme, host)| {
         !scheme.is_empty() && !host.contains('/') && !text.contains(char::is_whitespace)
@@ -76,13 +75,12 @@ pub(super) fn origin(text: &str) -> Result<String, String> {
 }
 
 impl Admission {
-    /// Sees whether the one who asks may watch.
+    /// Checks the request of a viewer.
     ///
-    /// # Errors
-    /// The [`Refusal`].
+    /// # Errors The [`Refusal`].
     pub(super) fn judge(&self, request: &Request) -> Result<(), Refusal> {
         let headers = request.headers();
-        // More than one is what no browser sends.
+        // No browser sends more than one.
         for origin in headers.get_all(ORIGIN) {
             let origin = String::from_utf8_lossy(origin.as_bytes()).to_ascii_lowercase();
             if !self.origins.contains(&origin) {
@@ -110,7 +108,7 @@ impl Admission {
     }
 }
 
-/// Compares secrets in a time that does not depend on where they differ.
+/// Compares secrets in a time that is independent of the place of their difference.
 fn is_same(one: &str, other: &str) -> bool {
     let pairs = one.bytes().zip(other.bytes());
     one.len() == other.len() && pairs.fold(0, |differ, (a, b)| differ | (a ^ b)) == 0
@@ -129,12 +127,12 @@ impl Refusal {
     }
 }
 
-/// Refusals as they are said: each once in a while, with how many there were since.
+/// Refusals for the log: each kind once in an interval, with its count since.
 #[derive(Debug, Default)]
 pub(super) struct Refusals(BTreeMap<Refusal, (Instant, u64)>);
 
 impl Refusals {
-    /// The line of a refusal, if it is to be said now.
+    /// The line of a refusal, if it is due.
     pub(super) fn line(&mut self, refusal: &Refusal, now: Instant) -> Option<String> {
         if let Some((said, more)) = self.0.get_mut(refusal) {
             if now < *said + QUIET {

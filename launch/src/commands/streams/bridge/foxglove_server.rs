@@ -1,6 +1,6 @@
 //! Serves messages to viewers that speak the Foxglove protocol, as JSON channels.
 //!
-//! The protocol is the library's; connections are accepted here, for its own server judges nobody who connects.
+//! The protocol is the library's; connections are accepted here, because its own server admits everyone.
 
 use std::collections::BTreeMap;
 use std::net::{SocketAddr, TcpListener, TcpStream};
@@ -26,23 +26,23 @@ const MOST: usize = 32;
 /// Pause after a connection that the system could not accept.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// A server of messages. It takes nothing from its viewers.
+/// A server of messages, without input from its viewers.
 pub(super) struct FoxgloveServer {
     port: u16,
     lobby: Arc<Lobby>,
     tables: KnownTables,
     limit: RateLimit,
-    /// Channels by topic and hash of the field table; `None` for messages that this program does not know.
+    /// Channels by topic and hash of the field table; `None` for unknown messages.
     channels: BTreeMap<(String, u32), Option<u64>>,
-    /// The last message of each topic that is kept for late joiners.
+    /// The last message of each topic that late joiners receive.
     kept: BTreeMap<String, ReceivedMessage>,
     wishes: Receiver<Wish>,
     refusals: Receiver<Refusal>,
 }
 
-/// What the server shares with the threads of its viewers.
+/// State shared by the server and the threads of its viewers.
 struct Lobby {
-    /// What each viewer is told first.
+    /// First message to each viewer.
     info: ServerInfo,
     admission: Admission,
     people: Mutex<People>,
@@ -68,7 +68,7 @@ impl Lobby {
     fn accept(self: &Arc<Self>, listener: &TcpListener) {
         loop {
             let Ok((stream, _)) = listener.accept() else {
-                // As where too many files are open: one may be closed soon.
+                // For example with too many open files: one may be closed soon.
                 std::thread::sleep(PAUSE);
                 continue;
             };
@@ -116,7 +116,7 @@ impl Lobby {
             .retain(|other| !Arc::ptr_eq(other, &viewer));
     }
 
-    /// Makes a channel, and tells all viewers of it; its number.
+    /// Creates a channel, and advertises it to all viewers; returns its number.
     fn advertise(&self, channel: impl FnOnce(u64) -> Option<Channel<'static>>) -> Option<u64> {
         let mut people = self.lock();
         let number = people.channels.len() as u64;
@@ -130,10 +130,9 @@ impl Lobby {
 }
 
 impl FoxgloveServer {
-    /// Begins to serve at an address, of port 0 at any; at most `hz` messages a second of each topic.
+    /// Starts serving at an address, with port 0 at any; at most `hz` messages a second of each topic.
     ///
-    /// # Errors
-    /// A [`UserError`] where the port is taken, or the address is not this machine's.
+    /// # Errors A [`UserError`] where the port is taken, or the address is not this machine's.
     pub(super) fn start(
         name: &str,
         at: SocketAddr,
@@ -176,12 +175,12 @@ impl FoxgloveServer {
         self.port
     }
 
-    /// Those who were refused since the last call.
+    /// Refusals since the last call.
     pub(super) fn refusals(&self) -> impl Iterator<Item = Refusal> {
         self.refusals.try_iter()
     }
 
-    /// Sends a message to those who watch its topic, if that has not sent its share already.
+    /// Sends a message to the watchers of its topic, within the topic's rate.
     pub(super) fn send(&mut self, received: ReceivedMessage) {
         if let Some(channel) = self.channel(&received) {
             let mut viewers = self.lobby.lock().viewers.clone();
@@ -196,7 +195,7 @@ impl FoxgloveServer {
         }
     }
 
-    /// Sends new watchers of a topic the message that is kept for late joiners.
+    /// Sends new watchers of a topic its cached message.
     pub(super) fn greet(&mut self) {
         while let Ok(Wish { viewer, channel }) = self.wishes.try_recv() {
             let people = self.lobby.lock();
@@ -223,7 +222,7 @@ impl FoxgloveServer {
         }
     }
 
-    /// The channel of a message; `None` where this program does not know it.
+    /// The channel of a message; `None` if it is unknown.
     fn channel(&mut self, received: &ReceivedMessage) -> Option<u64> {
         let (topic, schema) = (&received.topic, received.message.header.schema);
         if let Some(channel) = self.channels.get(&(topic.clone(), schema)) {
@@ -245,7 +244,7 @@ impl FoxgloveServer {
     }
 }
 
-/// Why a server does not start.
+/// The reason why a server does not start.
 fn fault(at: SocketAddr, error: &std::io::Error) -> UserError {
     let at = format!("{}, port {}", at.ip(), at.port());
     match error.kind() {

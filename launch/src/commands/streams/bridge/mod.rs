@@ -1,11 +1,11 @@
-//! `maulstick topic bridge`: the streams of a running rig for Foxglove, by a process of its own that no node waits for.
+//! `maulstick topic bridge`: the streams of a running rig for Foxglove, by a separate process that no node waits for.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`admission`] | who may watch |
+//! | [`admission`] | admission of viewers |
 //! | [`token`] | the secret in the address |
-//! | [`viewer`] | one who watches |
-//! | [`foxglove_server`] | what they are sent |
+//! | [`viewer`] | a viewer |
+//! | [`foxglove_server`] | messages to viewers |
 
 mod admission;
 mod foxglove_server;
@@ -51,7 +51,7 @@ pub struct BridgeOptions {
     target: Target,
 }
 
-/// A viewer that begins to watch a topic waits no longer for the message that is kept.
+/// Longest wait of a new viewer of a topic for the cached message.
 const SOON: Duration = Duration::from_millis(100);
 /// Time between two looks whether the rig runs.
 const LOOK: Duration = Duration::from_secs(1);

@@ -1,5 +1,5 @@
-//! The secret in the address of the bridge: one of each user, kept, so that an address that a viewer remembers goes on to
-//! hold. Whoever reads the user's files may watch; other users of the machine, and pages, may not.
+//! The secret in the address of the bridge, one for each user, stored, so that an address remembered by a viewer stays
+//! valid. Programs with access to the user's files may watch; other users of the machine, and web pages, may not.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -13,10 +13,9 @@ use tempfile::NamedTempFile;
 /// Random bytes of a token.
 const BYTES: usize = 16;
 
-/// The token of this user; a new one where there is none.
+/// The token of this user, created if absent.
 ///
-/// # Errors
-/// A [`UserError`] where it cannot be read or kept.
+/// # Errors A [`UserError`] where it cannot be read or stored.
 pub(super) fn own() -> Result<String, UserError> {
     let folders = directories::ProjectDirs::from("", "", "maulstick").ok_or_else(|| {
         UserError::failure("there is no folder for the settings of this user")
@@ -25,7 +24,7 @@ pub(super) fn own() -> Result<String, UserError> {
     kept_in(&folders.config_dir().join("bridge-token"))
 }
 
-/// The token in a file, which is made where there is none.
+/// The token in a file, created if absent.
 fn kept_in(path: &Path) -> Result<String, UserError> {
     match read(path)? {
         Some(token) => Ok(token),
@@ -47,7 +46,8 @@ fn read(path: &Path) -> Result<Option<String>, UserError> {
     Ok(is_sound.then(|| token.to_owned()))
 }
 
-/// A new token, or that of another bridge that has just made one. The file is whole under its name, or not there.
+/// A new token, or that of another bridge that has just made one. The file appears under its name completely or not at
+/// all.
 fn make(path: &Path) -> Result<String, UserError> {
     let failed = |error: Error| UserError::writing(path, &error);
     let folder = path.parent().unwrap_or_else(|| Path::new("."));
@@ -60,7 +60,7 @@ fn make(path: &Path) -> Result<String, UserError> {
     for byte in random {
         write!(token, "{byte:02x}").unwrap_or_default();
     }
-    // Its user alone may read it, as all files of this kind.
+    // Only its user may read it, like all files of this kind.
     let mut written = NamedTempFile::new_in(folder).map_err(failed)?;
     written
         .write_all(format!("{token}\n").as_bytes())
@@ -85,7 +85,7 @@ fn replace(path: &Path, token: String, written: NamedTempFile) -> Result<String,
             .at(path.display().to_string())
             .help("remove the file: another is made"));
     }
-    // Of bridges that find it damaged at the same time the first replaces it.
+    // The first of several bridges that find it damaged replaces it.
     there.lock().map_err(failed)?;
     match read(path)? {
         Some(token) => Ok(token),

@@ -1,4 +1,4 @@
-//! One viewer of the bridge: its connection, on a thread of its own, and what waits to be sent to it.
+//! One viewer of the bridge: its connection, on a separate thread, and its queue.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::io::{ErrorKind, Read, Write};
@@ -26,10 +26,10 @@ const LARGEST: usize = 1 << 20;
 const GREETING: Duration = Duration::from_secs(2);
 /// Longest wait for a viewer's message while others may have to be sent.
 const TURN: Duration = Duration::from_millis(10);
-/// A viewer that takes nothing for so long is dropped.
+/// Time after which a viewer that receives nothing is dropped.
 const STUCK: Duration = Duration::from_secs(2);
 
-/// What waits for a viewer, and what it watches.
+/// Queue and subscriptions of a viewer.
 #[derive(Debug, Default)]
 pub(super) struct Viewer(Mutex<Waiting>);
 
@@ -44,7 +44,7 @@ struct Waiting {
 
 /// A viewer's wish for a channel.
 pub(super) struct Wish {
-    /// Who wishes it.
+    /// Viewer of the request.
     pub viewer: Arc<Viewer>,
     /// The channel.
     pub channel: u64,
@@ -55,7 +55,7 @@ impl Viewer {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Has something said about the server.
+    /// Queues a message about the server.
     pub(super) fn say(&self, words: &impl JsonMessage) {
         let words = JsonMessage::to_string(words);
         self.lock().words.push_back(Message::text(words));
@@ -66,7 +66,7 @@ impl Viewer {
         self.lock().subscriptions.contains_key(&channel)
     }
 
-    /// Has a message of a channel sent, if it watches that.
+    /// Queues a message of a channel, if it is subscribed.
     pub(super) fn send(&self, channel: u64, time_ns: u64, json: &[u8]) {
         let mut waiting = self.lock();
         let Some(subscription) = waiting.subscriptions.get(&channel) else {
@@ -79,7 +79,7 @@ impl Viewer {
         }
     }
 
-    /// Carries out what it asks for; of channels there are `channels`.
+    /// Carries out its request; there are `channels` channels.
     fn obey(self: &Arc<Self>, message: &Message, channels: u64, wishes: &Sender<Wish>) {
         let parsed = match message {
             Message::Text(text) => ClientMessage::parse_json(text),
@@ -102,7 +102,7 @@ impl Viewer {
                 let is_kept = |_: &u64, own: &mut u32| !asked.subscription_ids.contains(own);
                 self.lock().subscriptions.retain(is_kept);
             }
-            // The bridge takes nothing else from its viewers.
+            // The bridge ignores all other messages of its viewers.
             Ok(_) | Err(_) => {}
         }
     }
@@ -175,7 +175,7 @@ impl Write for Greeting<'_> {
     }
 }
 
-/// Answers one that connects in vain, whatever it asks; nobody waits until it takes the answer.
+/// Answers a refused connection, whatever its request, without waiting until the answer is received.
 pub(super) fn turn_away(mut stream: TcpStream, why: &Refusal) {
     let response = why.response();
     let mut answer = Vec::new();
@@ -186,10 +186,9 @@ pub(super) fn turn_away(mut stream: TcpStream, why: &Refusal) {
     }
 }
 
-/// Greets one that connects: a viewer's connection, where it is admitted.
+/// Accepts a connection: returns that of an admitted viewer.
 ///
-/// # Errors
-/// Why it is not, or nothing where it says nothing that is understood.
+/// # Errors The refusal, or `None` for an unreadable request.
 pub(super) fn greet(
     stream: TcpStream,
     admission: &Admission,
@@ -230,7 +229,7 @@ pub(super) fn greet(
         .set_read_timeout(Some(TURN))
         .and_then(|()| stream.set_write_timeout(Some(STUCK)))
         .map_err(|_| None)?;
-    // What came with the request would have been refused, so nothing of it is lost.
+    // Data sent with the request would have been refused, so none are lost.
     Ok(WebSocket::from_raw_socket(
         stream,
         Role::Server,

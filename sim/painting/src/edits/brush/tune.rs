@@ -73,7 +73,7 @@ impl Form for Tune {
 }
 
 impl PaintingEdit for Tune {
-    /// Makes a brush stiffer or softer; who solves it hears of it by the scene.
+    /// Makes a brush stiffer or softer; its solver is informed by the scene.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         painting.brushes.at(&self.brush)?;
         let tunings = &mut painting.scene.tunings;

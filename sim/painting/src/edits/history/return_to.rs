@@ -1,4 +1,4 @@
-//! Makes the painting as it was in a version.
+//! Restores a version of the painting.
 use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::values::{ValueError, VersionName};

@@ -1,4 +1,4 @@
-//! Takes the newest step back.
+//! Undoes the newest step.
 use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
 use maulstick_types::values::{BrushName, ValueError};

@@ -94,8 +94,8 @@ impl Form for Wet {
 impl PaintingEdit for Wet {
     /// Rewets the newest dry layers of a part in place.
     ///
-    /// A cell takes no more than it can hold: paint without room, and all under it there, stays dry. A layer that is
-    /// empty afterwards is removed from the scene. A layer whose opacity is not 1 is refused, for wet paint has no
+    /// A cell takes at most its capacity: paint without room, and all under it there, stays dry. A layer that is empty
+    /// afterwards is removed from the scene. A layer whose opacity is not 1 is refused, because wet paint has no
     /// opacity.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let (on, part) = painting.surfaces.part(self.surface, self.region.as_ref())?;

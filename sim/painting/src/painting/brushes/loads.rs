@@ -15,11 +15,11 @@ use crate::painting::Painting;
 use crate::painting::optics::thinner_slot;
 use crate::painting::strokes::deferral::Deferral;
 
-/// What a brush takes up, by the halves of its head: slots and shares.
+/// Paint to be taken up, by the halves of a head: slots and shares.
 type Halves<'a> = [(&'a [(usize, f64)], Half)];
 
 impl PaintingBrush {
-    /// Gives what it carries to the cleaner.
+    /// Moves its load to the cleaner.
     pub(crate) fn empty(&mut self, ledger: &mut Ledger) {
         self.deferral = Deferral::default();
         let left = Arc::make_mut(&mut self.load).take_all();
@@ -66,7 +66,7 @@ pub(crate) fn named(mixtures: &[Mixture]) -> Vec<String> {
     names
 }
 
-/// Mixture of the well at a place, m, which nobody has stirred there.
+/// Mixture of the well at a place, m, as filled.
 pub(crate) fn well_at(surface: &Surface, at_m: [f64; 2]) -> Option<Mixture> {
     let mut wells = surface.wells.iter();
     let well = wells.find(|well| {
@@ -80,7 +80,7 @@ pub(crate) fn well_at(surface: &Surface, at_m: [f64; 2]) -> Option<Mixture> {
     }
 }
 
-/// Mixture of counted paint, shares by volume; `None` if there is none.
+/// Mixture of counted paint, shares by volume; `None` without paint.
 pub(crate) fn mixture_of(counts: &Counts, scene: &Scene) -> Option<Mixture> {
     let total: u64 = counts.iter().sum();
     let counted = scene.paints.iter().zip(counts);
@@ -105,18 +105,16 @@ impl Painting {
 
     /// Mixture of all paint on a brush, shares by volume.
     ///
-    /// # Errors
-    /// [`EditError`] for an unknown brush, or one that carries nothing.
+    /// # Errors [`EditError`] for an unknown or empty brush.
     pub(crate) fn carried_mixture(&mut self, brush: &str) -> Result<Mixture, EditError> {
         self.commit();
         let brush = self.brushes.at(brush)?;
         self.brushes[brush].mixture(&self.scene)
     }
 
-    /// Gives a brush the loads that its next strokes take in turn.
+    /// Gives a brush the loads for its next strokes in turn.
     ///
-    /// # Errors
-    /// [`EditError`] for an unknown brush or paint, or one paint more than there are slots.
+    /// # Errors [`EditError`] for an unknown brush or paint, or one paint more than there are slots.
     pub fn take(&mut self, brush: &str, loads: &[Mixture]) -> Result<(), EditError> {
         let brush = self.brushes.at(brush)?;
         self.optics.all_slots(&mut self.scene, loads)?;

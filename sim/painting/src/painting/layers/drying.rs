@@ -1,9 +1,9 @@
 //! Paint that dries over time.
 //!
-//! Time is the journal's ticks of 1/60 s. A drying goes over its tiles in rounds, of which there are 32 at most, half a
-//! second or more apart: in a round each tile's film dries by the share of the remaining time that has elapsed since
-//! the round before, so that paint applied meanwhile dries in the rest. A tick dries 32 tiles at most, and none while a
-//! brush paints: time goes on, and due tiles are dried when the brush is lifted.
+//! Time is the journal's ticks of 1/60 s. A drying visits its tiles in at most 32 rounds, half a second or more apart:
+//! in a round each tile's film dries by the share of the remaining time that has elapsed since the round before, so
+//! that paint applied meanwhile dries in the rest. A tick dries at most 32 tiles, and none while a brush paints: time
+//! continues, and due tiles are dried when the brush is lifted.
 
 use std::sync::Arc;
 
@@ -22,11 +22,9 @@ use crate::painting::surfaces::{Changed, Part, SurfaceState};
 const TILES_A_TICK: usize = 32;
 
 impl Painting {
-    /// Has the wet paint of a part dry evenly into one new layer over a time.
+    /// Begins to dry the wet paint of a part evenly into one new layer over a time.
     ///
-    /// # Errors
-    /// [`EditError`] for an unknown surface, a part beside it, where nothing is wet, and where a
-    /// drying goes on.
+    /// # Errors [`EditError`] for an unknown surface, a part beside it, nothing wet, and a drying in progress.
     pub(crate) fn dry_over(&mut self, edit: &Dry, over: Ticks) -> Result<Applied, EditError> {
         let (surface, region) = (edit.surface, edit.region.as_ref());
         let (on, part) = self.surfaces.part(surface, region)?;
@@ -59,13 +57,13 @@ impl Painting {
         !self.clock.dryings.is_empty()
     }
 
-    /// The dryings that go on, and the ticks so far.
+    /// Dryings in progress, and the number of ticks.
     #[must_use]
     pub fn clock(&self) -> &Clock {
         &self.clock
     }
 
-    /// Notes that a brush did something: whether it is in contact says whether paint may dry.
+    /// Updates the contact of a brush, which decides whether paint may dry.
     pub(crate) fn note_contact(&mut self, brush: &str) {
         if self
             .brushes
@@ -90,7 +88,7 @@ impl Painting {
             return;
         };
         let drying = self.clock.dryings[place].clone();
-        // It was found when the drying began, and surfaces stay as large as they are.
+        // The part was found when the drying began, and surfaces keep their size.
         let Ok((on, part)) = self.surfaces.part(surface, drying.region.as_ref()) else {
             self.clock.dryings.remove(place);
             return;
@@ -129,7 +127,7 @@ impl Painting {
 }
 
 impl SurfaceState {
-    /// So many tiles as dry in a tick, from the one with number `first` on, and which is next.
+    /// The tiles of one tick, from the one with number `first` on, and the next number.
     fn some_dried(
         &self,
         part: &Part,

@@ -8,7 +8,7 @@ use super::Painting;
 use super::surfaces::Changed;
 
 impl Painting {
-    /// Dries the lower `share` of the wet paint of a surface, within the step that is open, and says which layer it is;
+    /// Dries the lower `share` of the wet paint of a surface, within the open step, and returns its layer;
     /// `None` where nothing is wet.
     pub(crate) fn dry_in_step(&mut self, on: usize, share: f32, name: &str) -> Option<String> {
         let number = next_layer(&self.scene);
@@ -22,7 +22,7 @@ impl Painting {
         Some(self.add_layer(number, name).name)
     }
 
-    /// Puts tiles of a surface in their places, within the step that is open.
+    /// Replaces tiles of a surface, within the open step.
     pub(crate) fn put_changed(&mut self, on: usize, tiles: Changed) {
         let surface = self.surfaces[on].id;
         for (id, tile) in tiles {
@@ -48,7 +48,7 @@ impl Painting {
         layer
     }
 
-    /// Tells the look and all who follow the scene.
+    /// Updates the appearance, and publishes the scene.
     pub(crate) fn layers_changed(&mut self) {
         self.optics.set_layers(&self.scene);
         self.scene.version += 1;

@@ -62,7 +62,7 @@ impl BackendFacts {
     }
 }
 
-/// The paint models at work, and what they have not written back.
+/// Paint models in use, and their unsettled steps.
 #[derive(Default)]
 pub(crate) struct Backend {
     pub(crate) models: Models,
@@ -80,7 +80,7 @@ impl Backend {
 }
 
 impl Painting {
-    /// Has the steps of surfaces with a model of this name computed by this one from now on.
+    /// Sets the model that computes the steps of surfaces with a model of this name.
     pub fn set_model(&mut self, model: Box<dyn PaintModel>) {
         self.close_windows();
         self.backend.models.replace(model);
@@ -102,7 +102,7 @@ impl Painting {
         self.backend.facts.limit.take()
     }
 
-    /// Has the model write back what it holds.
+    /// Makes the model write back its results.
     pub(crate) fn settle(&mut self) {
         if let Some(brush) = self.backend.unsettled.take()
             && let own = &mut self.brushes[brush]
@@ -122,7 +122,8 @@ impl Painting {
         facts.limit.find(models.take_limit());
     }
 
-    /// Notes what so many steps of a brush did on a surface; of deferred ones that is known when they are settled.
+    /// Records the results of a number of a brush's steps on a surface; those of deferred ones are known when they are
+    /// settled.
     fn note(&mut self, brush: usize, surface: usize, report: &StepReport, steps: u32) {
         self.accounts.note(report);
         let defers = self.backend.defers(&self.surfaces[surface], false);
@@ -137,7 +138,7 @@ impl Painting {
 /// Time at which the model moves the paint of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Timing {
-    /// In the step.
+    /// During the step.
     Now,
     /// When it is settled.
     Deferred,
@@ -184,7 +185,7 @@ impl Stroke<'_> {
         }
     }
 
-    /// Notes what a step did; the report of a deferred one covers all that were not settled.
+    /// Records the results of a step; the report of a deferred one covers all that were unsettled.
     pub(super) fn note(&mut self, report: &StepReport, timing: Timing) {
         let unsettled = match timing {
             Timing::Deferred => self.brush().deferral.unsettled(),

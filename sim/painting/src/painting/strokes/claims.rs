@@ -13,7 +13,7 @@ impl Stroke<'_> {
         }
     }
 
-    /// Notes which tiles the brush's step reaches, and ends the open steps of other brushes that have reached one of
+    /// Records the tiles reached by the brush's step, and ends the open steps of other brushes that have reached one of
     /// them.
     pub(super) fn claim(&mut self, cells: Cells) {
         let (surface, store) = (self.surface().id, &self.surface().store);

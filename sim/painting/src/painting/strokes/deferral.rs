@@ -9,7 +9,7 @@ const SETTLE_EVERY: u32 = 256;
 pub(crate) struct Deferral {
     /// Deferred steps since its stroke began.
     steps: u32,
-    /// Those of them that are not settled.
+    /// Number of them that are unsettled.
     unsettled: u32,
     /// Fullness of the brush when it was last read.
     pub(super) fullness: Option<f32>,
@@ -21,7 +21,7 @@ impl Deferral {
         self.unsettled
     }
 
-    /// Counts a step; true where all are to be settled, and the fullness read anew.
+    /// Counts a step; true where all are to be settled, and the fullness updated.
     pub(super) fn count(&mut self) -> bool {
         self.steps += 1;
         self.unsettled += 1;

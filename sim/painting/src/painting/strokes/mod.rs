@@ -20,10 +20,9 @@ use super::Painting;
 use stroke::Stroke;
 
 impl Painting {
-    /// Paints what a brush did in its epoch: strokes are numbered from 1 in each.
+    /// Paints a state of a brush in its epoch, in each of which strokes are numbered from 1.
     ///
-    /// # Errors
-    /// [`EditError`] for an unknown brush, or a state that does not fit its brush file.
+    /// # Errors [`EditError`] for an unknown brush, or a state that does not fit its brush file.
     pub fn state(&mut self, brush: &str, epoch: u32, state: &BrushState) -> Result<(), EditError> {
         let brush = self.brushes.at(brush)?;
         let solved = state.solves.iter();
@@ -63,7 +62,7 @@ impl Painting {
         stroke.follow(epoch, solve)
     }
 
-    /// Ends a brush's contact: what it left relaxes.
+    /// Ends a brush's contact; its paint relaxes.
     fn lift(&mut self, brush: usize) {
         if let Some((mut stroke, path)) = self.take_path(brush) {
             stroke.finish(path);

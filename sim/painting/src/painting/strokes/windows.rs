@@ -4,7 +4,7 @@ use super::cells::Cells;
 use super::stroke::Stroke;
 use crate::painting::Painting;
 
-/// A window reaches this many cells beyond the head, so that it is not opened anew at each step.
+/// Number of cells of a window beyond the head, so that it is not reopened at each step.
 const WINDOW_MARGIN: i64 = 32;
 
 impl Stroke<'_> {

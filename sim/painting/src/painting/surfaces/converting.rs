@@ -24,7 +24,7 @@ const AT_A_TIME: usize = 64;
 /// Tiles with the same pages, which become one and the same.
 type Pages = Vec<u64>;
 
-/// What a tile is made of.
+/// Pages of a tile.
 fn pages_of(tile: &Tile) -> Pages {
     let wet = tile.wet_page().map_or(0, Page::id);
     let layers = tile.dry().into_iter().flat_map(|stack| stack.layers());
@@ -33,7 +33,7 @@ fn pages_of(tile: &Tile) -> Pages {
         .collect()
 }
 
-/// A tile that is to be converted.
+/// A tile to convert.
 struct Job {
     id: TileId,
     tile: Arc<Tile>,
@@ -42,7 +42,7 @@ struct Job {
 }
 
 impl Painting {
-    /// Gives the paints of the palette's wells slots, as far as there are free ones: conversions may use them.
+    /// Assigns slots to the paints of the palette's wells, while there are free ones, so that conversions may use them.
     pub(crate) fn take_up_wells(&mut self) -> Result<(), EditError> {
         let wells = self.scene.surfaces.iter().flat_map(|own| own.wells.clone());
         for well in wells.collect::<Vec<_>>() {
@@ -62,7 +62,7 @@ impl Painting {
         surfaces.map(|own| (own.id, own.model.name)).collect()
     }
 
-    /// The tiles of a surface in another colouring, as far as they change, and how near they come to what was seen.
+    /// The changed tiles of a surface in another colouring, and their distance from the old appearance.
     pub(crate) fn converted(&self, on: usize, to: Colouring) -> (Changed, Distance) {
         let surface = &self.surfaces[on];
         let converter = Converter::new(&self.optics.look, surface.model.shown.colouring(), to);
@@ -135,8 +135,8 @@ impl Painting {
         (tiles, distance)
     }
 
-    /// Puts tiles in place whose cells have as much paint as before, within a step: what changed from one paint to another
-    /// is booked as given and taken by a mode.
+    /// Replaces tiles by converted ones with the same amounts of paint by cell, within a step: changes from one paint
+    /// to another are booked as given and taken by a mode.
     pub(crate) fn put_converted(&mut self, on: usize, tiles: Changed) {
         let count = |tile: &Tile| {
             let mut counts = tile.counts();
@@ -190,7 +190,7 @@ fn assembled(tile: &Tile, converted: Converted, pager: &Arc<Pager>) -> Tile {
             .rev()
             .fold(None, |below, layer| Some(DryStack::over(below, layer)))
     };
-    // The wet page comes after the links: what dries of it from now on is a layer of its own.
+    // The wet page comes after the links: paint drying from it is a separate layer.
     let wet = tile.wet_page();
     let wet = wet.map(|wet| page(wet, converted.wet));
     Tile::of_pages(wet.filter(|page| !page.get().is_empty()), dry)

@@ -26,11 +26,11 @@ struct Laid {
     top: f32,
 }
 
-/// Results of an even film on tiles that were alike: they share their pages, so that a vast canvas takes no more room
-/// than a tile.
+/// Results of an even film on equal tiles: they share their pages, so that a vast canvas takes no more memory than a
+/// tile.
 #[derive(Default)]
 pub(crate) struct Films {
-    /// By the page of what was wet; 0 where nothing was.
+    /// Results by the page of the wet paint; 0 without any.
     laid: HashMap<u64, Laid>,
     /// Most quanta that has dried on a cell, by the pages of the layers.
     beneath: HashMap<Vec<u64>, f32>,
@@ -45,7 +45,7 @@ impl Films {
 }
 
 impl Painting {
-    /// Lays an even film of wet paint over a whole surface, but for its wells; from where `book` says.
+    /// Covers a whole surface, except its wells, with an even film of wet paint, from the account in `book`.
     pub(crate) fn lay_from(
         &mut self,
         surface: u32,
@@ -113,7 +113,7 @@ impl Painting {
 }
 
 impl SurfaceState {
-    /// Most quanta that each cell of a tile takes, and true if all cells take paint, none of them a well's.
+    /// Capacity of each cell of a tile, quanta, and true if all cells take paint and none is a well's.
     fn room(&self, id: TileId) -> (Vec<f32>, bool) {
         let mut room = vec![CELL_MAX as f32; TILE_CELLS];
         let [width, height] = self.store.cells().map(|cells| cells as usize);

@@ -37,7 +37,7 @@ impl Painting {
         self.end_own_step();
     }
 
-    /// Makes the surfaces of what they are to be made of.
+    /// Sets the materials of the surfaces.
     pub(crate) fn set_materials(&mut self, materials: &[SurfaceMaterial]) {
         self.close_windows();
         for material in materials {

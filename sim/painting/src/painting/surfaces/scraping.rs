@@ -7,8 +7,7 @@ use super::part::Changed;
 use crate::painting::Painting;
 
 impl super::SurfaceState {
-    /// Its tiles without their wet paint, but for that of the cells that `stay` of a tile has (a tile without stays
-    /// whole).
+    /// Its tiles without their wet paint, except in the cells that `stay` returns for a tile (one without stays whole).
     pub(crate) fn scraped(&self, stay: impl Fn(TileId) -> Option<Vec<usize>>) -> Changed {
         let scraped = self.wet_tiles().filter_map(|(id, tile)| {
             let tile = tile.scraped(&stay(id)?)?;
@@ -19,7 +18,7 @@ impl super::SurfaceState {
 }
 
 impl Painting {
-    /// Puts tiles in place that together have less wet paint than before, within a step; the cleaner takes the rest.
+    /// Replaces tiles by ones with less wet paint, within a step; the cleaner gets the difference.
     pub(crate) fn put_scraped(&mut self, on: usize, tiles: Changed) {
         let surface = &self.surfaces[on];
         let own = self.backend.models.of(surface.model).count_own();

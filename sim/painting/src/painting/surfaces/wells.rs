@@ -10,7 +10,7 @@ use crate::error::paint_error;
 use crate::painting::Painting;
 use crate::painting::surfaces::well_moves::WellMoves;
 
-/// Wells may reach beyond the edge of their surface by what rounding makes of it, m.
+/// Distance by which wells may exceed the edge of their surface because of rounding, m.
 const EDGE_M: f64 = 1e-6;
 
 impl Painting {
@@ -43,7 +43,7 @@ impl Painting {
         let bare = Arc::new(self.optics.blank(&changed, relief)?);
         self.close_windows();
         let moved = self.surfaces[on].with_moved_paint(&ways, &self.surfaces.pager);
-        // A palette that is laid out before anything was painted is nothing to undo.
+        // A palette that is laid out before anything was painted is no step to undo.
         let is_step = !moved.is_empty() || self.history.has_changed_surfaces();
         if !moved.is_empty() {
             self.clock.stop(Some(surface));

@@ -28,15 +28,14 @@ pub(crate) fn materials(scene: &Scene) -> Vec<SurfaceMaterial> {
 impl Painting {
     /// Undoes the newest step, of a brush or of all, and returns its name.
     ///
-    /// # Errors
-    /// [`EditError`] if there is no step, or something was painted over it since: then nothing has changed.
+    /// # Errors [`EditError`] if there is no step, or later paint covers it; the painting is then unchanged.
     pub fn undo(&mut self, brush: Option<&str>) -> Result<StepName, EditError> {
         if let Some(brush) = brush {
             self.brushes.at(brush)?;
         }
         self.commit();
         let own = |step: &OpenStep| brush.is_none() || step.brush.as_deref() == brush;
-        // Nothing lies over a step that is not finished.
+        // Nothing covers an unfinished step.
         if !self.history.open().any(own) {
             let step = self
                 .history
@@ -57,10 +56,9 @@ impl Painting {
         self.history.last_done(None).map_or(0, |step| step.id)
     }
 
-    /// Takes back all steps of a brush that came after the one with this number.
+    /// Undoes all steps of a brush after the one with this number.
     ///
-    /// # Errors
-    /// As [`undo`](Self::undo).
+    /// # Errors As [`undo`](Self::undo).
     pub fn undo_to(&mut self, brush: &str, step: u64) -> Result<(), EditError> {
         self.end_step(|_| true);
         let later = |own: &Step| own.id > step;
@@ -75,10 +73,9 @@ impl Painting {
         self.history.part_at(step);
     }
 
-    /// Does the newest undone step again, of a brush or of all, and says what it was.
+    /// Redoes the newest undone step, of a brush or of all, and returns its name.
     ///
-    /// # Errors
-    /// As [`undo`](Self::undo).
+    /// # Errors As [`undo`](Self::undo).
     pub fn redo(&mut self, brush: Option<&str>) -> Result<StepName, EditError> {
         if let Some(brush) = brush {
             self.brushes.at(brush)?;
@@ -91,15 +88,14 @@ impl Painting {
         Ok(self.walk(&step, Direction::Redo))
     }
 
-    /// Undoes or redoes steps until the one of this number is the newest that is done, 0 for none, and returns its
-    /// name.
+    /// Undoes or redoes steps until the one with this number is the newest done one, 0 for none, and returns its name.
     ///
-    /// # Errors
-    /// [`EditError`] for an unknown step, and where something was painted over one on the way: then nothing has changed.
+    /// # Errors [`EditError`] for an unknown step, and where later paint covers one of them; the painting is then
+    /// unchanged.
     pub fn go_to(&mut self, step: u64) -> Result<StepName, EditError> {
         let open = self.history.open().find(|open| open.id == step);
         if let Some(what) = open.map(|open| open.what.clone()) {
-            // Of steps that are not finished none counts as newer.
+            // Unfinished steps do not count as newer.
             return Ok(what);
         }
         let way = self.history.way_to(step).ok_or(EditError::NoStep)?;
@@ -118,8 +114,8 @@ impl Painting {
                 Direction::Redo => self.redo(None),
             };
             if let Err(error) = went {
-                // Back by the way that was just gone, which nothing lies over. No message describes what it leaves: dryings
-                // that were stopped, steps that were ended.
+                // Back along the same steps, which nothing covers. No message describes the remaining effects: stopped
+                // dryings, ended steps.
                 self.break_record();
                 for way in gone.into_iter().rev() {
                     drop(match way {
