@@ -13,7 +13,7 @@ pub(crate) fn worded(error: &RequestError) -> UserError {
     }
 }
 
-/// What to do about it in this window; `None` where the general words do.
+/// Remedy in this window; `None` where the general words suffice.
 #[must_use]
 fn words(advice: &Advice) -> Option<String> {
     let words = match advice {

@@ -28,8 +28,7 @@ const LOADS: [&str; 4] = [
     "Phthalo Green Blue Shade=0.3,Titanium White=0.7",
 ];
 
-/// The recording of a person's strokes if it lies beside the project, else the demo; and its length
-/// in seconds.
+/// The recording of a person's strokes if it is beside the project, else the demo; and its length in seconds.
 pub(crate) fn performance(place: &Path) -> Result<(PathBuf, f64), UserError> {
     let table =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/painting30sec.dat");

@@ -1,4 +1,4 @@
-//! Work beside the steps of the 30 s recording: packing its PNG, its light, the heights of its tooth; each as a share
+//! Work besides the steps of the 30 s recording: packing its PNG, its light, the heights of its tooth; each as a share
 //! of the processor's time for all of it, so a busy machine shows the same. Medians of five.
 
 use std::time::Duration;
@@ -74,7 +74,7 @@ pub(crate) fn run(
     Ok(())
 }
 
-/// The median of the times of several runs, s, and what the last returned.
+/// Median duration of several runs, s, and the result of the last.
 fn median<T>(
     mut work: impl FnMut() -> Result<(T, Duration), UserError>,
 ) -> Result<(f64, T), UserError> {

@@ -1,4 +1,4 @@
-//! What the grid asserts, and the faults that it must find.
+//! Assertions on the grid, and the faults that they must find.
 
 use super::*;
 
@@ -15,7 +15,7 @@ fn every_hand_is_still_gets_no_energy_and_feels_its_wall() {
         if !run.is_good(outcome) {
             println!("{run:?}: {outcome:?}");
         }
-        // What is not given is told.
+        // A reduced force is reported.
         let told = run.stiffness.min(MAX_STIFFNESS_N_M);
         assert!(
             (outcome.told_n_m - told).abs() < 1e-9,
@@ -50,11 +50,11 @@ fn a_force_sent_60_times_a_second_shakes_a_fingertip() {
     assert_eq!(of[2].fails, 0, "the arm hides it");
 }
 
-/// The other seeded fault: a servo that does nothing is still and gives nothing.
+/// The other seeded fault: a servo without force is still and gives nothing.
 #[test]
 fn a_servo_that_does_nothing_is_found_out() {
     for (run, outcome) in went(Path::Nothing) {
-        // Whatever the models say.
+        // Independent of the models.
         if run.stiffness < BOUND_N_M && run.jitter == 0.0 && run.rate_hz == 60.0 {
             assert!(!run.is_good(&outcome), "{run:?}");
         }

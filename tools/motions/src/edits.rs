@@ -1,4 +1,4 @@
-//! Operations on the motion of a take. What it is painted with stays in it.
+//! Operations on the motion of a take, which keep its setup.
 
 use std::path::PathBuf;
 
@@ -119,7 +119,7 @@ pub(crate) struct RetimeOptions {
     seconds: Option<f64>,
 }
 
-/// What a mirror exchanges.
+/// Directions exchanged by a mirror.
 #[derive(ValueEnum, Clone, Copy, Debug)]
 enum MirrorAxis {
     /// Left and right
@@ -162,7 +162,7 @@ impl TakeFiles {
         })
     }
 
-    /// As [`change`](Self::change), with what the take is painted with.
+    /// [`change`](Self::change) with the take's setup.
     fn change_all(
         &self,
         device: Option<&str>,
@@ -284,7 +284,7 @@ pub(crate) fn join(options: &JoinOptions) -> Result<i32, UserError> {
     Ok(0)
 }
 
-/// True if two takes are painted with the same, but for what their strokes load.
+/// True if two takes have the same setup, except for the loads of their strokes.
 fn is_same(one: &TakeSetup, other: &TakeSetup) -> bool {
     (&one.settings, &one.files) == (&other.settings, &other.files)
 }
@@ -300,7 +300,7 @@ fn in_turn(each: &[(Vec<String>, usize)]) -> Vec<String> {
         return first.clone();
     }
     let of = |(loads, strokes): &(Vec<String>, usize)| {
-        // A take without loads goes on with the first of the others.
+        // A take without loads continues with the first of the others.
         let loads = if loads.is_empty() { first } else { loads };
         let own: Vec<String> = loads.iter().cycle().take(*strokes).cloned().collect();
         own

@@ -15,7 +15,7 @@ use maulstick::commands::{print_json, progress, progress_bar};
 use maulstick::document::wrong;
 use maulstick::say;
 
-/// At most so many names are printed of a kind.
+/// Greatest number of printed names of a kind.
 const NAMES: usize = 20;
 
 /// The group of the command.

@@ -93,7 +93,7 @@ impl<T: Clone + PartialEq> PendingValue<T> {
         }
     }
 
-    /// Notes that a value was requested.
+    /// Stores a requested value.
     pub fn ask(&mut self, ui: &Ui, value: T) {
         self.asked = Some((value, ui.input(|input| input.time)));
     }

@@ -17,7 +17,7 @@ use crate::display_transform::DisplayTransform;
 const TINT: f64 = 10.0;
 /// Thickness of the film by which hiding power is judged, m.
 const FILM_M: f64 = 50e-6;
-/// Largest number of cached mixtures; beyond, all are computed anew.
+/// Greatest number of cached mixtures; above it all are recomputed.
 const KEPT: usize = 256;
 /// Colour of pure thinner, linear.
 const CLEAR: [f32; 3] = [0.75, 0.75, 0.72];
@@ -27,7 +27,7 @@ const CLEAR: [f32; 3] = [0.75, 0.75, 0.72];
 pub struct Showing<'a> {
     /// The paints.
     pub library: &'a Arc<PaintLibrary>,
-    /// The light; the usual one until a scene is known.
+    /// The light; the default one until a scene is known.
     pub light: Option<&'a Light>,
     /// Colours as the display has to be sent them.
     pub tint: &'a Arc<DisplayTransform>,
@@ -39,7 +39,7 @@ pub struct Swatches {
     made: Option<Made>,
 }
 
-/// For what the colours hold.
+/// Conditions of the cached colours.
 #[derive(Debug)]
 struct Made {
     library: Arc<PaintLibrary>,
@@ -68,7 +68,7 @@ impl Swatches {
         colours
     }
 
-    /// Colour of a thick layer of a mixture; `None` for paints that the rig does not have.
+    /// Colour of a thick layer of a mixture; `None` for paints that the rig lacks.
     pub fn mixture(&mut self, showing: Showing<'_>, mixture: &Mixture) -> Option<Color32> {
         let made = self.made_for(showing);
         let text = mixture.to_string();
@@ -129,7 +129,7 @@ impl Made {
     }
 }
 
-/// The lightest paint of a library: what tints are made with.
+/// The lightest paint of a library, for tints.
 fn whitest(library: &PaintLibrary, viewing: &Viewing) -> Option<Blend> {
     let paints = library.paints().iter();
     let seen = paints.map(|paint| {

@@ -17,7 +17,7 @@ use crate::view::fit_crosses;
 use crate::view::well_labels::{self, Shown};
 use maulstick_client::force_history;
 
-/// A newton is shown so long, m.
+/// Length of a newton's arrow, m.
 const ARROW_M_N: f64 = 0.02;
 const ARROW: Color32 = Color32::from_rgb(230, 120, 40);
 
@@ -50,7 +50,7 @@ impl App {
         places.map(pointer).collect()
     }
 
-    /// Does what concerns the desk.
+    /// Does an action of the desk.
     pub(super) fn act(&mut self, act: Action, context: &Context) {
         let (Some(canvas), Some(view)) = (self.studio.rig.live.canvas(), &self.desk.view) else {
             return;
@@ -187,7 +187,7 @@ impl App {
         }
     }
 
-    /// Names the wells on the palette as it is seen.
+    /// Labels the wells on the displayed palette.
     pub(super) fn name_wells(&self, painter: &egui::Painter, view: &View, seen: &[Surface]) {
         let palette = seen.iter().find(|surface| surface.id == PALETTE);
         let (Some(canvas), Some(palette)) = (self.studio.rig.live.canvas(), palette) else {
@@ -204,7 +204,7 @@ impl App {
         }
     }
 
-    /// Shows what a device is to touch that is being fitted.
+    /// Shows the target of a device during its fitting.
     pub(super) fn show_fit(&self, painter: &egui::Painter, view: &View) {
         if let (Some(fit), Some(canvas)) =
             (&self.studio.rig.setup.fit, self.studio.rig.live.canvas())
@@ -213,7 +213,7 @@ impl App {
         }
     }
 
-    /// Draws the force in the hand as an arrow from the brush, as long as its panel is seen.
+    /// Draws the force on the hand as an arrow from the brush, while its panel is visible.
     pub(super) fn draw_force(&self, painter: &egui::Painter, view: &View) {
         let seen =
             self.studio.preferences.window.panels && self.studio.preferences.is_open("Device");
@@ -232,7 +232,7 @@ impl App {
         painter.circle_stroke(from, ring, Stroke::new(1.5, ARROW));
     }
 
-    /// Lays palette and wells for the hand that paints, where the painter has changed it.
+    /// Moves palette and wells to the side of the painting hand, if the painter has changed it.
     pub(super) fn change_hands(&mut self) {
         let side = side(&self.studio.preferences);
         let (Some(canvas), Some(palette)) = (
@@ -253,7 +253,7 @@ impl App {
         if before == Some(key) || !(rests || changes) {
             return;
         }
-        // One that is out stays where it is.
+        // A palette over the canvas stays.
         let pose = if rests {
             beside(canvas, palette, side)
         } else {

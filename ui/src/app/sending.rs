@@ -1,5 +1,5 @@
-//! Requests on their way to the rig, in their order among the strokes; what has to wait for a brush to lift, or is
-//! refused until then.
+//! Requests to the rig, in their order among the strokes; those that wait for a brush to lift, or are refused until
+//! then.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -74,7 +74,7 @@ impl Sending {
         let orders = studio.requests.take_session_orders();
         let shown = (&mut studio.rig, &mut studio.notifications);
         self.sessions.poll(context, orders, shown);
-        // The mouse's samples until then are sent, and those of others heard.
+        // The mouse's samples until then are sent, and those of others received.
         let heard_ns = tracker.heard_until_ns().min(now_ns);
         let asked_ns = studio.rig.live.now_ns.max(heard_ns);
         for follow_up in studio.requests.take_follow_ups() {

@@ -19,18 +19,18 @@ pub(crate) struct Foot {
     pub entered: bool,
     /// The pending work; it cannot be started twice.
     pub busy: Option<&'static str>,
-    /// What is asked for first, where nothing is chosen that could be confirmed.
+    /// Request for the missing choice, where nothing can be confirmed yet.
     pub lacks: Option<&'static str>,
 }
 
 /// Decision of the painter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Answer {
-    /// Nothing yet.
+    /// The dialog stays open.
     Stay,
-    /// To leave.
+    /// The dialog is cancelled.
     Leave,
-    /// To go.
+    /// The dialog is confirmed.
     Go,
 }
 
@@ -40,7 +40,7 @@ pub(crate) fn first() -> Id {
     Id::unique("first of the dialog")
 }
 
-/// The colour of what is wrong.
+/// Colour of faults.
 #[must_use]
 pub(crate) fn wrong(visuals: &Visuals) -> Color32 {
     if visuals.dark_mode {

@@ -19,7 +19,7 @@ pub(crate) const KINDS: &str = tr_noop!(
     "Drop a painting (.maul), a recording (.mcap), a picture to look at (PNG, JPEG, TIFF, OpenEXR, OpenRaster) or a brush (.toml)."
 );
 
-/// A file that was dropped, as it was found to be.
+/// A dropped file, by its kind.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Dropped {
     /// A painting: it is opened.
@@ -108,7 +108,7 @@ fn brush(path: &Path, name: &str) -> Dropped {
     }
 }
 
-/// Shows what dropping the file over the window would do.
+/// Shows the effect of dropping the file over the window.
 pub(crate) fn hint(context: &Context) {
     let hovered = context.input(|input| {
         let first = input.raw.hovered_files.first();

@@ -94,7 +94,7 @@ impl ExportPicture {
         }
     }
 
-    /// The same with a folder whose entries are known.
+    /// The dialog with a folder whose entries are known.
     #[cfg(test)]
     pub(crate) fn with(mut self, browser: Browser) -> Self {
         self.browser = browser;

@@ -29,7 +29,7 @@ pub(crate) struct OpenPainting {
 }
 
 impl OpenPainting {
-    /// One of `folder`, or one of the recent ones.
+    /// A painting of `folder`, or a recent one.
     #[must_use]
     pub(crate) fn new(folder: &Path, recent: RecentList, unkept: UnsavedState) -> Self {
         let shown = paths::shown(folder);
@@ -57,7 +57,7 @@ impl OpenPainting {
         }
     }
 
-    /// Takes in the rig's refusal.
+    /// Shows the rig's refusal.
     pub(crate) fn refused(&mut self, words: String) {
         self.wrong = Some(words);
     }
@@ -67,7 +67,7 @@ impl OpenPainting {
         self.browser.set(paths::shown(path));
     }
 
-    /// The same with a folder whose entries are known.
+    /// The dialog with a folder whose entries are known.
     #[cfg(test)]
     pub(crate) fn with(mut self, browser: Browser) -> Self {
         self.browser = browser.with_pictures();

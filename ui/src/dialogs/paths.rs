@@ -1,4 +1,4 @@
-//! File paths, as they are typed and as they are shown.
+//! File paths, as typed and as shown.
 
 use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, SystemTime};
@@ -11,10 +11,9 @@ use maulstick_types::values::WholePath;
 /// File ending of a painting.
 pub(crate) const PAINTING: &str = "maul";
 
-/// A whole path as messages carry it.
+/// A whole path for messages.
 ///
-/// # Errors
-/// What is wrong with it, in words.
+/// # Errors The fault, in words.
 pub(crate) fn named(path: &Path) -> Result<WholePath, String> {
     let name = path.to_str().map(WholePath::new);
     match name {
@@ -43,8 +42,7 @@ pub(crate) fn documents() -> PathBuf {
     own.filter(|folder| folder.is_dir()).unwrap_or_else(home)
 }
 
-/// The whole path of what was typed: `~` is the user's folder, and what does not begin at the root counts
-/// from there.
+/// The whole path of a typed one: `~` is the user's folder, and relative paths start there.
 #[must_use]
 pub(crate) fn whole(typed: &str) -> PathBuf {
     let typed = typed.trim();
@@ -98,7 +96,7 @@ pub(crate) fn ending_in(path: &Path, wanted: &str) -> PathBuf {
     }
 }
 
-/// The first of `stem.ending`, `stem 2.ending`, … that is not there.
+/// The first unused name of `stem.ending`, `stem 2.ending`, ….
 #[must_use]
 pub(crate) fn free(folder: &Path, stem: &str, ending: &str) -> PathBuf {
     let named = |number: u32| match number {

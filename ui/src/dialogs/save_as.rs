@@ -1,4 +1,4 @@
-//! Dialog that moves the painting to another file and goes on there.
+//! Dialog that moves the painting to another file, where it continues.
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +20,7 @@ pub(crate) struct SaveAs {
 }
 
 impl SaveAs {
-    /// Begins with a name that is free, in `folder`; `stem` is what it begins with.
+    /// Begins with an unused name in `folder`, starting with `stem`.
     #[must_use]
     pub(crate) fn new(folder: &Path, stem: &str) -> Self {
         Self::at(paths::shown(&paths::free(folder, stem, paths::PAINTING)))
@@ -34,14 +34,14 @@ impl SaveAs {
         }
     }
 
-    /// The same with a folder whose entries are known.
+    /// The dialog with a folder whose entries are known.
     #[cfg(test)]
     pub(crate) fn with(mut self, browser: Browser) -> Self {
         self.browser = browser;
         self
     }
 
-    /// Takes in the rig's refusal.
+    /// Shows the rig's refusal.
     pub(crate) fn refused(&mut self, words: String) {
         self.wrong = Some(words);
     }

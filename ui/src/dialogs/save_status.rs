@@ -1,5 +1,5 @@
-//! The line at the lower edge: name of the painting, and whether it is saved. It opens a menu of all file
-//! actions, for painters who do not know the keys. Before it stands the mark of a recording in progress.
+//! The line at the lower edge: name of the painting, and whether it is saved. It opens a menu of all file actions, for
+//! painters without the keys. The mark of a recording in progress stands before it.
 
 use std::path::Path;
 
@@ -33,7 +33,7 @@ const OFFERS: [Action; 6] = [
     Action::Reference,
 ];
 
-/// The line; empty where nothing is known of the painting.
+/// The line; empty while the painting is unknown.
 fn words(context: &Context, work: &PanelContext<'_>) -> String {
     let Some(node) = &work.rig.live.paint else {
         return String::new();
@@ -66,7 +66,7 @@ fn words(context: &Context, work: &PanelContext<'_>) -> String {
     }
 }
 
-/// Shows the line; what was chosen under it.
+/// Shows the line; returns the choice from its menu.
 pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) -> Option<Action> {
     let words = words(context, work);
     if words.is_empty() && work.rig.recording.is_none() {
@@ -100,8 +100,8 @@ pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) -> Option<Act
     chosen
 }
 
-/// Greatest width of the line and its height over the window's edge, points: beside the bar, or over it where that
-/// leaves no room; `aside` is its distance from its side of the window.
+/// Greatest width of the line and its height over the window's edge, points: beside the bar, or over it where there is
+/// no room; `aside` is its distance from its side of the window.
 fn room(window: Rect, bar: Option<Rect>, aside: f32) -> (f32, f32) {
     let least_above = 4.0;
     let whole = window.width() - aside - 3.0 * MARGIN;
@@ -120,7 +120,7 @@ fn room(window: Rect, bar: Option<Rect>, aside: f32) -> (f32, f32) {
     }
 }
 
-/// The line with its menu; what was chosen there.
+/// The line with its menu; returns the choice.
 fn menu(ui: &mut Ui, words: &str, keymap: &Keymap) -> Option<Action> {
     let mut chosen = None;
     let button = Button::new(RichText::new(words).small())

@@ -48,7 +48,7 @@ pub(crate) enum Action {
     TurnLeft,
     /// The mouse's brush turned to the right.
     TurnRight,
-    /// The mouse's brush across its stroke, or as it is turned.
+    /// The mouse's brush across its stroke, or at its own rotation.
     Follow,
     /// The mouse presses lighter.
     Lighter,
@@ -76,7 +76,7 @@ pub(crate) enum Action {
     Keys,
     /// Show the steps of a first painting.
     Tutorial,
-    /// Show what program this is.
+    /// About the program.
     About,
     /// Close the window.
     Quit,
@@ -101,7 +101,7 @@ impl Action {
         matches!(self, Self::Clean | Self::Size | Self::Zoom)
     }
 
-    /// True for an action whose effect adds up: it acts again while its key is kept down.
+    /// True for a cumulative action, which repeats while its key is held.
     #[must_use]
     pub(crate) fn repeats(self) -> bool {
         matches!(
@@ -345,7 +345,7 @@ pub(crate) const BINDINGS: [Binding; 44] = [
     ),
 ];
 
-/// What the pointer does with something held, and its description.
+/// Functions of the pointer with a held key, with descriptions.
 pub(crate) const HELD: [(&str, &str); 6] = [
     ("Shift and drag", "Paint a straight stroke"),
     ("Wheel", "Zoom"),
@@ -361,7 +361,7 @@ pub(crate) const HELD: [(&str, &str); 6] = [
     ),
 ];
 
-/// A key as it is written: signs as themselves.
+/// Text of a key, with signs as themselves.
 #[must_use]
 pub(crate) fn written(context: &Context, shortcut: &KeyboardShortcut) -> String {
     let text = context.format_shortcut(shortcut);

@@ -1,11 +1,11 @@
-//! Keys, mouse and gestures, and what they ask for.
+//! Keys, mouse and gestures, and their requests.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`keys`] | actions and their usual keys |
-//! | [`keymap`] | the keys that the painter has chosen |
+//! | [`keys`] | actions and their default keys |
+//! | [`keymap`] | the painter's keys |
 //! | [`presses`] | presses of keys |
-//! | [`pointer_path`] | path of the pointer, and where its button presses the brush |
+//! | [`pointer_path`] | path of the pointer, and presses of its button |
 //! | [`pixel_path`] | the same without the steps of whole pixels |
 //! | [`ruler`] | straight strokes |
 //! | [`size_drag`] | width of the brush by dragging |

@@ -1,4 +1,4 @@
-//! A colour that the painter has in mind, chosen in a square or written as hex, and the mixtures that come near it.
+//! A colour of the painter's choice, from a square or as hex, and nearby mixtures.
 
 use std::sync::Arc;
 
@@ -45,10 +45,9 @@ impl Default for ColourWindow {
     }
 }
 
-/// A colour as it is written on the web: `#8a5a3c`, also without the sign, or with three digits.
+/// A colour in the web's notation: `#8a5a3c`, also without the sign, or with three digits.
 ///
-/// # Errors
-/// What is wrong with it, in one line.
+/// # Errors The fault, in one line.
 fn parsed(text: &str) -> Result<[u8; 3], String> {
     let text = text.trim();
     let digits = text.strip_prefix('#').unwrap_or(text);

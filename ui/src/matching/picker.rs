@@ -61,8 +61,7 @@ pub(crate) fn of_palette(palette: Option<&Surface>) -> Option<Vec<String>> {
 
 /// Searches.
 ///
-/// # Errors
-/// Why nothing can be found, and what to do, in words.
+/// # Errors The reason why nothing can be found, and a remedy, in words.
 pub(crate) fn search(ask: &Ask, library: &PaintLibrary) -> Matches {
     let paints: Vec<Paint> = match &ask.paints {
         None => library.paints().to_vec(),
@@ -205,7 +204,7 @@ mod tests {
             found[0].delta_e < 2.0 && far(found[0].rgb) < 12,
             "{found:?}"
         );
-        // Without the light's strength it would look darker than what was picked.
+        // Without the light's strength it would look darker than the picked colour.
         let mut bright = ask.clone();
         bright.light.exposure = 1.0;
         bright.light.intensity = 0.8;

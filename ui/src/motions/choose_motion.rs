@@ -30,12 +30,12 @@ pub(crate) struct ChooseMotion {
     wrong: Option<String>,
 }
 
-/// What the dialog has come to in a frame.
+/// Result of the dialog in a frame.
 #[derive(Debug, Default)]
 pub(crate) struct Chosen {
     /// True if it closes.
     pub closes: bool,
-    /// The motion that is to be put down.
+    /// The chosen motion.
     pub chosen: Option<Motion>,
 }
 

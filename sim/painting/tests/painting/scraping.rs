@@ -68,7 +68,7 @@ fn a_part_is_scraped_alone() {
     assert!(part.apply(&mut painting).is_err(), "there is no more");
 }
 
-/// Paint stirred in a well would lie as half discs beside the new wells.
+/// Paint stirred in a well would form half discs beside the new wells.
 #[test]
 fn paint_of_wells_that_go_is_scraped_off_alone() {
     let mut painting = painting(&PaintingSetup::default());
@@ -200,7 +200,7 @@ fn paint_moves_with_its_well_quantum_by_quantum() {
         let to = (cell.0, (to[0] + way[0]) as u32, (to[1] + way[1]) as u32);
         assert_eq!(after.get(&to), before.get(*cell), "{cell:?}");
     }
-    // In the middle of the board nothing has changed, and beside the well lies only what lay beside it before.
+    // The middle of the board is unchanged, and the area beside the well has only its old paint.
     let board = |cells: &BTreeMap<(usize, u32, u32), f32>| -> BTreeMap<_, _> {
         let cells = cells.iter().filter(|(cell, _)| cell.1 < 300);
         cells.map(|(cell, count)| (*cell, *count)).collect()

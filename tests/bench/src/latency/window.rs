@@ -20,7 +20,7 @@ use crate::running::{Running, display, fault};
 
 /// Width and height of the window, pixels.
 const SIZE: [u32; 2] = [1280, 720];
-/// What is not in a frame this long after the take's end is lost.
+/// Time after the take's end after which a missing sample is lost.
 const GRACE: Duration = Duration::from_secs(2);
 /// A pause between two depositing samples that is longer is no painting, ns.
 const PAUSE_NS: u64 = 500_000_000;
@@ -51,7 +51,7 @@ pub(crate) fn run(
     Ok(())
 }
 
-/// What was seen of a window.
+/// Observations of a window.
 #[derive(Default)]
 struct Seen {
     /// Times of depositing samples that are in no frame yet, by the number of their state, ns.
@@ -121,7 +121,7 @@ impl Seen {
         }
     }
 
-    /// Times between frames while somebody paints, ms.
+    /// Intervals between frames during painting, ms.
     fn periods(&self) -> Vec<f64> {
         let painting = |at_ns: u64| {
             let next = self.painted.partition_point(|painted| *painted < at_ns);

@@ -1,8 +1,8 @@
-//! One stroke on finer and finer cells: it leaves as much paint, and relief of the same wavelengths.
+//! One stroke on successively finer cells: it deposits the same amount of paint, and relief of the same wavelengths.
 //!
 //! Spectra of two sizes of cells are compared on the coarser ones: the finer relief is averaged onto them. Power is
 //! summed over octaves of wavelength, along the stroke and across it, from two of the coarser cells up to a quarter of
-//! the part that is looked at.
+//! the measured part.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -26,7 +26,7 @@ const HEIGHTS_MM: [f64; 4] = [14.0, 38.0, 62.0, 86.0];
 /// Load.
 const PAINT: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
 
-/// What strokes left on cells of one size.
+/// Paint of strokes on cells of one size.
 pub(super) struct Left {
     volume_mm3: f64,
     /// Height of the surface in the middle of each stroke, µm.
@@ -106,7 +106,7 @@ fn halved(map: &Map) -> Map {
 fn octaves(map: &Map, axis: usize) -> Vec<f64> {
     let length = map.size[axis];
     let (step, next) = [(1, map.size[0]), (map.size[0], 1)][axis];
-    // Waves of the whole length, of half of it, and so on: those of an octave.
+    // Waves of the whole length, of half of it, and so on, within an octave.
     let octave = |number: u32| -> Range<usize> {
         let most = (length / 2) >> number;
         most / 2 + 1..most + 1
@@ -187,7 +187,7 @@ mod tests {
         );
     }
 
-    /// Where fine cells have no coarser grid to level on, ridges are left of 520 times the power.
+    /// Without a coarser grid for levelling, ridges on fine cells keep 520 times the power.
     #[test]
     fn a_stroke_leaves_the_same_on_the_finest_cells() {
         let [coarse, fine] =

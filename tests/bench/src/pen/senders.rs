@@ -141,7 +141,7 @@ fn send_windows(
     }
 }
 
-/// A window that shows nothing but the desk.
+/// A window that shows only the desk.
 struct Window;
 
 impl DeskView for Window {

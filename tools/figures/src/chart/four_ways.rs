@@ -17,7 +17,7 @@ const MARGIN: usize = 20;
 const TITLE: f32 = 22.0;
 const SMALL: f32 = 16.0;
 
-/// Shares of the second paint, and how they are written: 0, 1:64 by doublings to 64:1, 1.
+/// Shares of the second paint, and their labels: 0, 1:64 by doublings to 64:1, 1.
 pub(crate) fn shares() -> Vec<(f64, String)> {
     let step = |k: i32| {
         let ratio = f64::from(1 << k.unsigned_abs());
@@ -33,7 +33,7 @@ pub(crate) fn shares() -> Vec<(f64, String)> {
     shares
 }
 
-/// Title of a way of mixing; `rule` is the rule's name.
+/// Title of a method of mixing; `rule` is the rule's name.
 pub(crate) fn title(way: Way, rule: &str) -> String {
     match way {
         Way::Reference => "101 samples".into(),
@@ -50,10 +50,9 @@ pub(crate) fn mean_and_most(delta_e: &[f64]) -> [f64; 2] {
     [mean, most]
 }
 
-/// The four rows with what they show.
+/// The four rows with their captions.
 ///
-/// # Errors
-/// A [`UserError`] where the font cannot be read.
+/// # Errors A [`UserError`] where the font cannot be read.
 pub(crate) fn picture(
     gradings: &[Grading],
     ends: [&str; 2],

@@ -11,7 +11,7 @@ use crate::panels::{self, Panel};
 use crate::settings::window_side::WindowSide;
 use crate::widgets::context::PanelContext;
 
-/// Room at the right for the scroll bar, points.
+/// Width of the scroll bar at the right, points.
 const BAR: f32 = 14.0;
 
 /// The column.
@@ -56,7 +56,7 @@ impl Column {
                         // Else it is as narrow as its content, and the bar with it.
                         .auto_shrink([false, true])
                         .show(ui, |ui| {
-                            // The bar lies over what is at the edge.
+                            // The bar covers the edge.
                             ui.set_max_width(ui.available_width() - BAR);
                             self.panels(ui, work);
                         });

@@ -39,7 +39,7 @@ pub(super) struct FirstRun {
 }
 
 impl FirstRun {
-    /// Follows the painting, and shows the line while it helps, beside the part of the window that the palette covers.
+    /// Tracks the painting, and shows the line while it helps, beside the part of the window covered by the palette.
     pub(super) fn show(
         &mut self,
         context: &Context,

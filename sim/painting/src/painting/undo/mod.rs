@@ -151,7 +151,7 @@ impl Painting {
         let other_rest = layers.is_some_and(|ends| ends[from] != self.scene.layers)
             || made.is_some_and(|ends| ends[from] != materials(&self.scene));
         let other_books = !self.accounts.ledger.can_book(&effects.booked, way.times());
-        // A later step may have led back to what this one left, as a return to a version does.
+        // A later step may have led back to the tiles of this one, like a return to a version.
         let later = match way {
             Direction::Undo => self.history.later_on(step),
             Direction::Redo => None,
@@ -166,11 +166,11 @@ impl Painting {
         })
     }
 
-    /// Takes a step back, or forth; it was checked.
+    /// Undoes or redoes a checked step.
     fn walk(&mut self, step: &Step, way: Direction) -> StepName {
         let to = way.ends()[1];
         let effects = &step.effects;
-        // Time would do again what is taken back.
+        // A drying would undo this.
         self.clock.stop(None);
         self.record.turn(step);
         for (place, change) in &*step.tiles {
@@ -192,8 +192,8 @@ impl Painting {
         step.what.clone()
     }
 
-    /// Restores the height of the paint where nothing else was painted meanwhile: then the same motion paints the same
-    /// again.
+    /// Restores the height of the paint where no other paint was added meanwhile, so that the same motion paints the
+    /// same again.
     fn turn_tops(&mut self, step: &Step, way: Direction) {
         let newest = self.history.last_done(None).map_or(0, |newest| newest.id);
         let [before, after] = &step.effects.tops;
@@ -211,7 +211,7 @@ impl Painting {
         }
     }
 
-    /// Makes layers and surfaces what they are to be.
+    /// Replaces layers and surfaces by the given state.
     pub(crate) fn turn_non_tile_state(
         &mut self,
         layers: Option<&Vec<Layer>>,
@@ -238,15 +238,15 @@ impl Painting {
         &self.history
     }
 
-    /// Forgets all steps: nothing of before can be undone.
+    /// Drops all steps, none of which can be undone any more.
     pub fn forget_history(&mut self) {
         self.end_step(|_| true);
         self.history.forget();
         self.break_record();
     }
 
-    /// Merges the oldest steps until all pages take so many bytes in memory, or only the newest steps are apart: for a
-    /// painting whose new pages no document holds.
+    /// Merges the oldest steps until all pages take at most `resident` bytes in memory, or only the newest steps are
+    /// left, for a painting without a document for its new pages.
     pub fn merge_history(&mut self, resident: usize) {
         while self.bytes() > resident && self.history.merge_oldest() {}
     }

@@ -1,4 +1,4 @@
-//! Steps of the history: their beginning, their end, and what is booked for them.
+//! Steps of the history: their beginning, end and bookings.
 
 use std::sync::Arc;
 
@@ -25,11 +25,11 @@ impl Painting {
         }
     }
 
-    /// Begins a step of a brush, or of none: one for all who paint, then.
+    /// Begins a step of a brush, or without a brush, which then ends the steps of all.
     pub(crate) fn begin_step(&mut self, what: StepName, brush: Option<usize>) {
         self.book(brush);
         let own = self.brushes.name(brush).map(str::to_owned);
-        // A step of nobody's that is open here is a drying's: it is parted by what comes between.
+        // An open step without a brush is a drying's, and is split by the new one.
         self.end_step(|step| own.is_none() || step.brush.is_none() || step.brush == own);
         let before = self.non_tile_state();
         self.history.begin(what, own.as_deref(), before);
@@ -73,7 +73,7 @@ impl Painting {
         self.end_step(|step| step.brush.as_ref() == Some(&own));
     }
 
-    /// Books what was booked since the last call for the step of a brush, or of none.
+    /// Assigns the bookings since the last call to the step of a brush, or of none.
     pub(crate) fn book(&mut self, brush: Option<usize>) {
         let booked = self.accounts.take_booked();
         if let Some(open) = self.history.open_of(self.brushes.name(brush)) {
@@ -81,13 +81,13 @@ impl Painting {
         }
     }
 
-    /// Puts a tile in the place of another, within the open step of no brush.
+    /// Replaces a tile within the open step without a brush.
     pub(crate) fn replace(&mut self, place: TilePlace, tile: TileRef) {
         let before = self.surfaces.put(place, tile);
         self.history.replaced(None, place, before);
     }
 
-    /// A step as it is if it ends now. A brush's step leaves what other brushes carry alone.
+    /// A step as if it ended now. A brush's step leaves the loads of other brushes alone.
     fn finished(&self, open: &OpenStep, after: &NonTileState) -> Step {
         let tiles = open.tiles.iter().map(|(place, before)| {
             let change = Change {
@@ -115,14 +115,14 @@ impl Painting {
         }
     }
 
-    /// The steps that are not finished, as they are if they end now.
+    /// The unfinished steps, as if they ended now.
     pub(crate) fn open_steps(&mut self) -> Vec<Step> {
         let after = self.non_tile_state();
         let open = self.history.open();
         open.map(|open| self.finished(open, &after)).collect()
     }
 
-    /// Merges the oldest steps until the history keeps to its quota, or only the newest are apart.
+    /// Merges the oldest steps until the history keeps to its quota, or only the newest are left.
     pub(super) fn keep_to_quota(&mut self) {
         let (surfaces, versions, record) = (&self.surfaces, &self.versions, &self.record);
         let besides = || surfaces.held_bytes(versions.tiles().chain(record.tiles()));

@@ -12,7 +12,7 @@ use maulstick_types::scene::NamedVersion;
 use crate::history::{NonTileState, TilePlace, TileRef, same};
 use crate::painting::Painting;
 
-/// A painting as it was.
+/// A version of a painting.
 #[derive(Clone, Debug)]
 pub struct Named {
     /// Its name.
@@ -34,7 +34,7 @@ pub(crate) struct Versions {
     named: BTreeMap<String, Named>,
     /// Versions that came, changed or went since the last checkpoint.
     touched: BTreeSet<String>,
-    /// The version from which the painter goes on.
+    /// The version on which the painter continues.
     pub(crate) line: Option<String>,
 }
 
@@ -77,14 +77,14 @@ impl Versions {
         }
     }
 
-    /// Adds a version, from which the painter goes on.
+    /// Adds a version, on which the painter continues.
     fn add(&mut self, version: Named) {
         self.line = Some(version.name.clone());
         self.touched.insert(version.name.clone());
         self.named.insert(version.name.clone(), version);
     }
 
-    /// Removes a version; those painted from it count as painted from what it was painted from.
+    /// Removes a version; its descendants become those of its parent.
     fn remove(&mut self, name: &str) -> Result<(), EditError> {
         let parent = self.find(name)?.parent.clone();
         self.named.remove(name);
@@ -144,22 +144,21 @@ impl Painting {
         self.versions.iter()
     }
 
-    /// The version from which the painter goes on.
+    /// The version on which the painter continues.
     #[must_use]
     pub fn line(&self) -> Option<&str> {
         self.versions.line.as_deref()
     }
 
-    /// Tells all who follow the scene.
+    /// Publishes the changed scene.
     fn versions_changed(&mut self) {
         self.scene.versions = self.versions.entries();
         self.scene.version += 1;
     }
 
-    /// Keeps the painting as it is.
+    /// Saves the current painting as a version.
     ///
-    /// # Errors
-    /// [`EditError`] where there is a version of that name.
+    /// # Errors [`EditError`] where there is a version of that name.
     pub fn keep(&mut self, name: &str) -> Result<(), EditError> {
         self.versions.check_new(name)?;
         self.end_step(|_| true);
@@ -174,10 +173,9 @@ impl Painting {
         Ok(())
     }
 
-    /// Makes the painting as it was in a version: a step that can be undone.
+    /// Restores the painting of a version, as a step that can be undone.
     ///
-    /// # Errors
-    /// [`EditError`] for an unknown version.
+    /// # Errors [`EditError`] for an unknown version.
     pub fn return_to(&mut self, name: &str) -> Result<(), EditError> {
         let to = self.versions.find(name)?.clone();
         self.clock.stop(None);
@@ -193,7 +191,7 @@ impl Painting {
                 self.replace(place, held);
             }
         }
-        // Its books know nothing of brushes that came later.
+        // Its ledger lacks brushes that came later.
         for brush in self.brushes.iter_mut() {
             match to.rest.loads.get(&brush.name) {
                 Some(page) => brush.carry(page),
@@ -215,10 +213,9 @@ impl Painting {
         Ok(())
     }
 
-    /// Begins a version from another one: the painting becomes as it was there.
+    /// Begins a version from another one, whose painting is restored.
     ///
-    /// # Errors
-    /// [`EditError`] where there is no such version, or one of the new name.
+    /// # Errors [`EditError`] where there is no such version, or one of the new name.
     pub fn branch(&mut self, from: &str, name: &str) -> Result<(), EditError> {
         self.versions.check_new(name)?;
         let begun = Named {
@@ -232,10 +229,9 @@ impl Painting {
         Ok(())
     }
 
-    /// Forgets a version; those painted from it count as painted from what it was painted from.
+    /// Deletes a version; its descendants become those of its parent.
     ///
-    /// # Errors
-    /// [`EditError`] for an unknown version.
+    /// # Errors [`EditError`] for an unknown version.
     pub fn forget(&mut self, name: &str) -> Result<(), EditError> {
         self.versions.remove(name)?;
         self.versions_changed();

@@ -1,8 +1,8 @@
-//! Random acts of a painter, and what each does.
+//! Random acts of a painter, and their execution.
 
 use super::*;
 
-/// Places over a surface that hang together, some far off, in and beside it, high and low.
+/// Connected places over a surface, some far off, in and beside it, high and low.
 pub(super) fn way(
     surface: u32,
     around: [f64; 2],
@@ -24,7 +24,7 @@ pub(super) fn way(
     prop::collection::vec(place, 2..5)
 }
 
-/// What a painter does.
+/// An act of a painter.
 #[derive(Clone, Debug)]
 pub(super) enum Act {
     Paint(usize, Vec<Place>),
