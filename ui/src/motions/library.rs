@@ -27,7 +27,7 @@ pub(crate) struct Motion {
     pub seconds: f64,
 }
 
-/// What is known of a file.
+/// State of a file, as far as it was read.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Known {
     /// It is to be read, or is being read.

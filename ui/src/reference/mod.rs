@@ -32,7 +32,7 @@ use picture::{Picture, Pinned};
 
 /// The least size of the frame, points.
 const LEAST: [f32; 2] = [220.0, 180.0];
-/// The picture is magnified at most so far beyond a pixel a point.
+/// Largest magnification of the picture, pixels of the screen for one of the picture.
 const CLOSEST: f32 = 16.0;
 /// The least height of the picture while mixtures are below it, points.
 const LEAST_PICTURE: f32 = 60.0;

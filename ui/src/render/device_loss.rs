@@ -31,7 +31,7 @@ impl DeviceLoss {
         }
     }
 
-    /// Follows `device`, and draws the window of `context` anew when it is lost.
+    /// Watches `device`, and has the window of `context` drawn again when it is lost.
     pub fn follow(&self, device: &wgpu::Device, context: &Context) {
         let (lost, context) = (self.clone(), context.clone());
         device.set_device_lost_callback(move |reason, words| {

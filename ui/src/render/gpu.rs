@@ -214,7 +214,7 @@ pub(crate) enum Filterable {
 pub(crate) mod testing {
     use super::*;
 
-    /// A device without a window, which encodes by itself as little as most windows do.
+    /// A device without a window, whose target, as those of most windows, encodes nothing.
     pub(crate) fn gpu() -> Gpu {
         let mut instance = wgpu::InstanceDescriptor::new_without_display_handle();
         instance.backends = wgpu::Backends::VULKAN;

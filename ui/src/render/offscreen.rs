@@ -38,7 +38,7 @@ impl Offscreen {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&asked))
             .map_err(|error| format!("no graphics device: {error}"))?;
-        // As most windows, it encodes by itself as little as possible.
+        // As those of most windows, the format encodes nothing.
         let format = wgpu::TextureFormat::Rgba8Unorm;
         let gpu = Gpu {
             device,

@@ -34,7 +34,7 @@ struct Heard {
     seq: u64,
 }
 
-/// States that come later than so many samples say nothing of how a pen is led.
+/// States that come more than this number of samples late say nothing of how a pen is led.
 const RECENT: usize = 256;
 
 /// A brush that made itself known.

@@ -58,7 +58,7 @@ fn carry_out(change: &SetupChange, rig: &str) -> Result<Made, UserError> {
     }
 }
 
-/// What the newest listing shows.
+/// Contents of the newest listing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Seen {
     nodes: Vec<String>,

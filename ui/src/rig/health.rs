@@ -30,9 +30,9 @@ enum DeviceFault {
     None,
     /// There is no device.
     Trouble {
-        /// What is wrong.
+        /// The fault.
         what: String,
-        /// What to do about it.
+        /// The remedy.
         help: String,
     },
     /// It gives no force: the faults that it has latched.

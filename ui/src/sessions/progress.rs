@@ -18,7 +18,7 @@ pub(crate) struct RecordingProgress {
 pub(crate) struct ReplayProgress {
     /// The recording.
     pub recording: PathBuf,
-    /// Where it is; `None` until the player has begun.
+    /// Position of the player; `None` until it has begun.
     pub position: Option<Position>,
     /// The painting in which a session is painted again; `None` if streams alone are sent.
     pub painting: Option<PathBuf>,

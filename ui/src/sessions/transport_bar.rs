@@ -86,7 +86,8 @@ impl Control {
 /// The bar.
 #[derive(Debug, Default)]
 pub(crate) struct TransportBar {
-    /// Place of the slider while it is dragged, s: going back paints a session anew, so only where it is let go counts.
+    /// Place of the slider while it is dragged, s: a seek backwards paints the session again, so only the place where
+    /// it is released counts.
     dragged_s: Option<f64>,
 }
 

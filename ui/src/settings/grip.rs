@@ -1,4 +1,4 @@
-//! How the mouse holds the brush.
+//! Grip of the mouse on the brush.
 
 use std::ops::RangeInclusive;
 

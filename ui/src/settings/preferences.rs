@@ -36,7 +36,7 @@ pub struct Preferences {
     pub brushes: BrushPreferences,
     /// True once the painter has painted here: the first line of help is no longer needed.
     pub has_painted: bool,
-    /// All that pens over the window have sensed, bits of `axes`: it was told of.
+    /// All axes that pens over the window have sensed, bits of `axes`.
     pub pen_senses: u32,
     /// The keys.
     pub keys: Keymap,
@@ -93,12 +93,12 @@ pub struct WindowPreferences {
 pub struct BrushPreferences {
     /// The painter's own brush files, in the order of the rack.
     pub own_brushes: Vec<PathBuf>,
-    /// What the brush was loaded with, or is to be; not kept, for a brush begins clean.
+    /// Load of the brush, or the one asked for; not stored, for a brush begins clean.
     #[serde(skip)]
     pub loading: BrushLoad,
     /// The brushes as they were last in the hand, by their names in the rig; without paint.
     pub in_hand: BTreeMap<String, Preset>,
-    /// How the mouse holds the brush.
+    /// Grip of the mouse on the brush.
     pub mouse: Grip,
     /// Pressure of the mouse and tuning of the brush before a preset set them, which end with its brush.
     pub before_preset: Option<BeforePreset>,

@@ -15,7 +15,7 @@ use crate::input::keys::{BINDINGS, Binding, written};
 const HEIGHT: f32 = 220.0;
 const LEAST_HEIGHT: f32 = 60.0;
 
-/// What the rows wait for.
+/// State of the rows that wait for an answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Waits {
     #[default]
@@ -79,7 +79,7 @@ impl KeyRows {
         };
     }
 
-    /// Shows them in a list that is at most so high, points.
+    /// Shows them in a list of at most this height, points.
     pub(super) fn show(&mut self, ui: &mut Ui, most: f32, keymap: &mut Keymap) {
         ui.horizontal(|ui| {
             ui.strong(tr!("Keys"));

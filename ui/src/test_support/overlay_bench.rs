@@ -205,7 +205,7 @@ pub(crate) fn picture<T: 'static>(
         harness.run_steps(4);
         harness
     };
-    // Where somebody wants to look at it: both themes, and finer pixels.
+    // With this variable set, both themes are drawn with finer pixels, to be looked at.
     if let Some(place) = std::env::var_os("MAULSTICK_LOOK") {
         for (theme, word) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
             let image = drawn(theme, 2.0, None).render().expect("a picture");

@@ -16,7 +16,7 @@ const STRENGTH: f32 = 0.5;
 pub struct Tracing {
     /// Its file.
     pub path: PathBuf,
-    /// How much of it is seen, 0 to 1.
+    /// Opacity, 0 to 1.
     pub strength: f32,
     /// True while it is shown.
     pub shown: bool,

@@ -15,7 +15,7 @@ use maulstick_client::request::Peer;
 
 /// Duration up to which work is not shown, ns.
 const SHORT_NS: u64 = 500_000_000;
-/// A light that lasts so long is one that was wanted, ns.
+/// A light that lasts longer than this was wanted, ns.
 const STOOD_NS: u64 = 1_000_000_000;
 /// Width of a bar, points.
 const BAR: f32 = 160.0;

@@ -138,7 +138,7 @@ fn size(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
     });
 }
 
-/// How its paint behaves; another choice converts what is painted.
+/// Model of the paint; another choice converts the existing paint.
 fn model(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
     let chosen = choice(ui, tr!("Paint model"), &canvas.model, model_names());
     if let Some(model) = chosen {

@@ -62,7 +62,7 @@ fn quantile(counts: &[u64], share: f64) -> Option<usize> {
     end.filter(|_| all > 0)
 }
 
-/// A bin of so many, in words.
+/// Number of a bin among `bins`, in words.
 fn bin(place: usize, bins: usize) -> String {
     let time = |place: usize| {
         let us = FIRST_US * 2f64.powi(place.min(60) as i32);

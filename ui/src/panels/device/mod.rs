@@ -42,7 +42,7 @@ const GRAPH: f32 = 84.0;
 const DIAL: f32 = 64.0;
 /// Drivers of the window's own mouse and pens.
 const OF_THE_WINDOW: [&str; 2] = ["pointer", "window"];
-/// A device of which nothing is heard for so long has left, ns.
+/// A device that has sent nothing for this time counts as unplugged, ns.
 const PRESENT_NS: u64 = 3_000_000_000;
 /// A changed strength is shown for this long until the device has it, ns.
 const PATIENCE_NS: u64 = 700_000_000;
@@ -118,7 +118,7 @@ impl Panel for DevicePanel {
         devices.sort_by_key(|(name, device)| (-i64::from(priority(device)), (*name).clone()));
         let names: Vec<String> = devices.into_iter().map(|(name, _)| name.clone()).collect();
         for name in names {
-            // What it sensed is long.
+            // The description of its axes is long.
             let Some(device) = work.rig.live.devices.remove(&name) else {
                 continue;
             };
@@ -170,7 +170,7 @@ impl DevicePanel {
         }
     }
 
-    /// What the painter may change of a device, and its test page.
+    /// The settings of a device that the painter may change, and its test page.
     fn own_settings(
         &mut self,
         ui: &mut Ui,

@@ -19,7 +19,7 @@ const MIN_GAP: f64 = 0.02;
 const GRID: f64 = 0.01;
 /// Most points of a curve.
 const MAX_POINTS: usize = 32;
-/// A drawn curve is shown for so long until the pen has it, s.
+/// Time for which a drawn curve is shown before the pen has taken it, s.
 const ANSWER_S: f64 = 6.0;
 
 /// Curves that are often wanted, by name.

@@ -102,7 +102,7 @@ pub(super) fn show(
         });
 }
 
-/// What each switch does.
+/// Switches of the device, with the meaning of each.
 fn switches(ui: &mut Ui, section: &DeviceSection) -> Option<Vec<String>> {
     let actions = section.actions();
     let mut chosen = None;

@@ -50,7 +50,7 @@ fn rows(work: &PanelContext<'_>) -> Vec<Row> {
     rows
 }
 
-/// What the rows have pictures of.
+/// Subjects of the rows that have pictures.
 pub(super) fn pictured(work: &PanelContext<'_>) -> Vec<Pictured> {
     let rows = rows(work).into_iter();
     rows.map(|row| Pictured::Step(row.id)).collect()

@@ -140,7 +140,7 @@ fn a_click_or_a_key_goes_to_a_step() {
     harness.run();
     let asked = [5, 8, 0].map(|step| Command::from(GoTo { step }));
     assert_eq!(harness.state_mut().asked(), asked);
-    // Where older steps are left out, the list does not reach back to the beginning.
+    // If older steps are left out, the list does not reach back to the beginning.
     let paint = harness.state_mut().rig.live.paint.as_mut().expect("a node");
     paint.status.undo = 40;
     harness.run();

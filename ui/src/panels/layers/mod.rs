@@ -145,7 +145,8 @@ impl LayersPanel {
                         tr!("Opacity of {layer}", layer = layer_name(layer)),
                     )
                 });
-                // All layers above are computed anew, and an opacity is a step to undo: once is enough.
+                // All layers above are computed again, and an opacity is a step to undo: one change at the end of the
+                // drag is enough.
                 if let Some(percent) = change.settled {
                     self.ask(now_s, work, (number, (percent * 1e-2) as f32));
                 }

@@ -52,7 +52,7 @@ pub(crate) struct Bristles<'a> {
     pub coat: Option<&'a PaintColour>,
 }
 
-/// The ribbons of a pose of so many strips, as one mesh.
+/// The ribbons of a pose with this number of strips, as one mesh.
 #[must_use]
 pub(crate) fn ribbons(
     pose: &HeadPose,

@@ -81,7 +81,7 @@ impl Chain {
             view: area.into(),
             ..Self::zeroed()
         };
-        // The shader takes all nodes of its kind of chain: a short one goes on where it ends.
+        // The shader takes all nodes of its kind of chain: a short one is filled up with its end.
         let mut last = ([0.0; 4], 0.0);
         for i in 0..NODES {
             if let Some(shade) = shades.get(i) {
@@ -210,7 +210,7 @@ impl CastShadow {
         }
     }
 
-    /// Prepares a chain of so many discs to be drawn on the backdrop (`desk`; the bare desk without one).
+    /// Prepares a chain with this number of discs to be drawn on the backdrop (`desk`; the bare desk without one).
     #[must_use]
     pub(crate) fn cast(
         &self,

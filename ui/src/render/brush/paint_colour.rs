@@ -87,8 +87,8 @@ impl PaintColour {
         self.load_share
     }
 
-    /// Colours of the tip of a head in so many columns from left to right; a column without bristles has the colour of
-    /// the one before it, or of the first that has any.
+    /// Colours of the tip of a head in `columns` columns from left to right; a column without bristles has the colour
+    /// of the one before it, or of the first that has any.
     #[must_use]
     pub fn across(&self, head: &Head, columns: usize) -> Vec<Vec3> {
         let mut sums = vec![(Vec3::ZERO, 0.0); columns];

@@ -14,7 +14,7 @@ use crate::painting::brushes::loads::{mixture_of, well_at};
 /// Load a brush with the mixture at a place
 ///
 /// The old load goes to the cleaner. Wet paint gives the mixture of all of it there, dry paint that of the newest
-/// layer, and an untouched well its own
+/// layer, and an untouched well its own.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct LoadFrom {
