@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 use maulstick_num::{atan2, powf, sin_cos};
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 
-/// Sample rate, Hz.
 const RATE_HZ: f64 = 250.0;
 /// A dab, from the first touch to the last, s.
 const DAB_S: f64 = 0.3;

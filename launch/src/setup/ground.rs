@@ -22,7 +22,7 @@ const SPECTRUM_MAX: usize = maulstick_types::limits::SPECTRUM_MAX;
 /// Source of a ground.
 #[derive(Clone, Debug)]
 pub enum GroundFile {
-    /// A name.
+    /// Ground of a library, by name.
     Named(String),
     /// A file of reflectances: its text.
     Spectrum(String),

@@ -20,11 +20,9 @@ use crate::up::plan::NodeSpec;
 /// End of a process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
-    /// With success.
     Well,
     /// With an exit code of bad usage: starting it again would not help.
     Refused(i32),
-    /// Otherwise.
     Badly,
 }
 
@@ -36,7 +34,6 @@ pub(super) struct Processes {
     ends: SignalStream,
 }
 
-/// A process.
 #[derive(Debug)]
 struct Process {
     child: Child,

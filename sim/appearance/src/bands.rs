@@ -25,10 +25,10 @@ use crate::display::DisplayTile;
 /// Number of drawing threads: the stepper and its worker have the other cores.
 const THREADS: usize = 2;
 /// Number of rows beyond a band on which its shadows, occlusion and slopes depend.
-const BEYOND: usize = REACH as usize;
+const MARGIN_ROWS: usize = REACH as usize;
 /// Number of bands that a [`Shelf`] caches on either side of the requested one: more than the distance between the
 /// threads.
-const KEPT: usize = 6;
+const CACHED_BANDS: usize = 6;
 
 /// Does `jobs` jobs on two threads and passes the results to `take`, on this thread and in order, with the number of
 /// the job. At most four results wait.
@@ -78,7 +78,7 @@ impl<T> Shelf<T> {
     /// Data of a band.
     pub fn get(&self, band: usize, make: impl FnOnce() -> T) -> Arc<T> {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.retain(|other, _| other.abs_diff(band) <= KEPT);
+        kept.retain(|other, _| other.abs_diff(band) <= CACHED_BANDS);
         let place = Arc::clone(kept.entry(band).or_default());
         drop(kept);
         Arc::clone(place.get_or_init(|| Arc::new(make())))
@@ -217,16 +217,16 @@ impl<'a> Banded<'a> {
     pub fn heights_around(&self, band: usize) -> BandHeights {
         let (width, rows) = (self.cells()[0], self.rows(band));
         let own = self.heights(band);
-        let mut heights = Vec::with_capacity((rows.len() + 2 * BEYOND) * width);
+        let mut heights = Vec::with_capacity((rows.len() + 2 * MARGIN_ROWS) * width);
         if band + 1 < self.bands() {
             let below = self.heights(band + 1);
-            heights.extend_from_slice(&below[below.len().saturating_sub(BEYOND * width)..]);
+            heights.extend_from_slice(&below[below.len().saturating_sub(MARGIN_ROWS * width)..]);
         }
         let first = heights.len() / width;
         heights.extend_from_slice(&own);
         if band > 0 {
             let above = self.heights(band - 1);
-            heights.extend_from_slice(&above[..above.len().min(BEYOND * width)]);
+            heights.extend_from_slice(&above[..above.len().min(MARGIN_ROWS * width)]);
         }
         BandHeights {
             cells: [width, heights.len() / width],

@@ -26,7 +26,7 @@ const KEPT_COLOURS: usize = 1 << 20;
 pub enum Ground {
     /// Internal reflectance, a value a wavelength.
     Even(Vec<f32>),
-    /// A picture.
+    /// Colours and heights from a picture.
     Picture(Arc<PictureGround>),
 }
 

@@ -20,9 +20,8 @@ use crate::subdivide::{Mesh, subdivide};
 const RINGS: [f64; 6] = [0.0, 0.2, 0.45, 0.7, 0.88, 0.98];
 const AROUND: usize = 12;
 /// A cubic B-spline through twelve points of a circle runs within it by this factor: (2 + cos 30°)/3.
-const WITHIN: f64 = 0.955_341_801_261_479_5;
+const SPLINE_RADIUS_FACTOR: f64 = 0.955_341_801_261_479_5;
 
-/// A control vertex.
 #[derive(Clone, Debug)]
 struct Vertex {
     /// Position at rest, brush frame, m.
@@ -214,8 +213,8 @@ fn around(file: &BrushFile, tuft: &SpineLayout) -> (Mesh, Vec<Vertex>) {
             let root = edge(file.head.outline, turn);
             let place = ring * file.length_share(root.to_array());
             let at = DVec3::new(
-                root.x * file.radius_m(place) / WITHIN,
-                root.y * file.half_thickness_m(place) / WITHIN,
+                root.x * file.radius_m(place) / SPLINE_RADIUS_FACTOR,
+                root.y * file.half_thickness_m(place) / SPLINE_RADIUS_FACTOR,
                 -place * file.length_m(),
             );
             let shares = weights_of(&spines, nearest_in_hull(&spines, root));

@@ -32,7 +32,7 @@ pub enum EditError {
     PaintFile {
         /// The line, from 1.
         line: usize,
-        /// The fault.
+        /// Fault, as a clause.
         what: String,
     },
     /// One paint more than a painting can have.
@@ -66,7 +66,7 @@ pub enum EditError {
     State {
         /// Name of the brush.
         brush: String,
-        /// The fault.
+        /// Fault, as a clause.
         fault: &'static str,
     },
     /// A state of another brush file; the name of the brush.
@@ -84,7 +84,7 @@ pub enum EditError {
     /// A refusal of a single kind of edit.
     #[error("{what}")]
     Own {
-        /// The fault.
+        /// Fault, as a clause.
         what: &'static str,
         /// Remedy.
         help: &'static str,
@@ -213,7 +213,7 @@ pub enum EditError {
     ToothName {
         /// Requested name.
         name: String,
-        /// The fault.
+        /// Fault, as a clause.
         fault: &'static str,
     },
     /// A text that is not a table of reflectances.

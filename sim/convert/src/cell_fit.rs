@@ -11,7 +11,7 @@ use crate::shown::{Kind, Paints, Shown};
 use crate::tile::Converter;
 
 /// Distance, ΔE₀₀, from which a fit is also tried from another start.
-const FAR: f64 = 1.0;
+const RETRY_DELTA_E: f64 = 1.0;
 
 /// Inputs of a fit, equal for many neighbours.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -198,7 +198,7 @@ impl<'a> CellFit<'a> {
             self.start.clone_from(&self.found.shares);
             self.fitter
                 .descend(colour, wanted, &self.start, &mut self.found);
-            if self.found.delta_e <= FAR {
+            if self.found.delta_e <= RETRY_DELTA_E {
                 return;
             }
         }
@@ -207,7 +207,7 @@ impl<'a> CellFit<'a> {
         if !has_last || self.other.energy < self.found.energy {
             std::mem::swap(&mut self.found, &mut self.other);
         }
-        if self.found.delta_e > FAR
+        if self.found.delta_e > RETRY_DELTA_E
             && let Some(masstones) = &self.converter.masstones
         {
             self.start.resize(self.own.len(), 0.0);

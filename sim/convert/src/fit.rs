@@ -6,16 +6,18 @@
 use maulstick_optics::colour::{Matrix, apply, delta_e_2000, delta_e_2000_near};
 
 use crate::cell::CellColour;
-use crate::program::{Active, NEAR, Program};
+use crate::program::{Active, OWN_SHARES_WEIGHT, Program};
 
 /// Cost of a mixture entirely of paints that the cell's own lacks, ΔE₀₀²/2.
 const FOREIGN: f64 = 0.05;
 /// Greatest number of steps.
 const STEPS: usize = 16;
 /// Gain of the last step, ΔE₀₀²/2.
-const ENOUGH: f64 = 1e-3;
-/// Factor on a step that overshoots, and number of shorter attempts.
-const SHORTER: (f64, usize) = (0.35, 5);
+const LAST_GAIN: f64 = 1e-3;
+/// Factor on a step that overshoots.
+const SHORTENING: f64 = 0.35;
+/// Greatest number of attempts of a step.
+const ATTEMPTS: usize = 5;
 
 /// Target of a fit.
 #[derive(Clone, Copy, Debug)]
@@ -64,7 +66,7 @@ impl Terms<'_> {
         let [l, c, h] = self.residual(lab);
         let mut energy = l * l + c * c + h * h;
         for (share, own) in shares.iter().zip(self.wanted.own) {
-            energy += NEAR * (share - own) * (share - own);
+            energy += OWN_SHARES_WEIGHT * (share - own) * (share - own);
             if *own <= 0.0 {
                 energy += 2.0 * FOREIGN * share;
             }
@@ -125,7 +127,7 @@ impl Fitter {
             found.energy = energy;
             lab = there;
             std::mem::swap(&mut self.slopes, &mut self.next_slopes);
-            if gained < ENOUGH {
+            if gained < LAST_GAIN {
                 break;
             }
         }
@@ -141,7 +143,7 @@ impl Fitter {
         from: &Found,
     ) -> Option<([f64; 3], f64)> {
         let mut part = 1.0;
-        for _ in 0..SHORTER.1 {
+        for _ in 0..ATTEMPTS {
             for (place, tried) in self.tried.iter_mut().enumerate() {
                 let start = from.shares[place];
                 *tried = start + part * (self.ends[place] - start);
@@ -151,7 +153,7 @@ impl Fitter {
             if energy < from.energy {
                 return Some((lab, energy));
             }
-            part *= SHORTER.0;
+            part *= SHORTENING;
         }
         None
     }

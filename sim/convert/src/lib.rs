@@ -68,4 +68,4 @@ mod program;
 mod shown;
 mod tile;
 
-pub use tile::{Converted, Converter, Distance, FAR, Farthest, TileGround};
+pub use tile::{Converted, Converter, Distance, Farthest, OBVIOUS_DELTA_E, TileGround};

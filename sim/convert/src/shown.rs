@@ -12,7 +12,6 @@ use crate::palette::Palette;
 /// Kind of a layer.
 #[derive(Clone, Debug)]
 pub(crate) enum Kind {
-    /// Wet paint.
     Wet,
     /// Dried paint.
     Dry {

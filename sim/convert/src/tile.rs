@@ -36,12 +36,12 @@ pub struct Distance {
     pub farthest: Option<Farthest>,
     /// Number of cells.
     pub cells: u64,
-    /// Number of cells beyond [`FAR`].
+    /// Number of cells beyond [`OBVIOUS_DELTA_E`].
     pub far: u64,
 }
 
 /// An obvious difference of colour, ΔE₀₀.
-pub const FAR: f64 = 5.0;
+pub const OBVIOUS_DELTA_E: f64 = 5.0;
 /// Thickness below which the opacity of a film may change in another model, for any mixture, m.
 const THIN_M: f64 = 40e-6;
 
@@ -188,7 +188,7 @@ impl<'a> Converter<'a> {
                         film_m: f64::from(film) * QUANTUM_M,
                     }),
                     cells: 1,
-                    far: u64::from(delta_e > FAR),
+                    far: u64::from(delta_e > OBVIOUS_DELTA_E),
                 });
             }
         }

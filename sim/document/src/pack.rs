@@ -15,7 +15,7 @@ use crate::tables::planes;
 /// Parts that a packed painting leaves out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Forget {
-    /// Nothing.
+    /// Keeps all parts.
     Nothing,
     /// The record of the painting; a new one begins.
     Record,

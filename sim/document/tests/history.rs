@@ -143,7 +143,7 @@ proptest! {
                 let opened = opened.expect("a painting");
                 since = opened.snapshot().versions;
                 kept = opened.sequencer().expect("whole");
-                twin.go_on();
+                twin.resume();
                 log.push("killed".to_owned());
                 let (one, two) = (print(&mut kept), print(&mut twin));
                 for (one, two) in one.iter().zip(&two) {

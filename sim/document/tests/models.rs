@@ -43,7 +43,7 @@ fn each_goes_on_in_its_document_as_in_memory() {
             ..
         } = Easel::open(&settings).expect("whole");
         // An opened painting continues with lifted brushes.
-        alone.go_on();
+        alone.resume();
         assert_eq!(kept.painting().model(CANVAS), Some(model));
         assert_eq!(print(&mut kept), print(&mut alone), "{model} opened again");
         for _ in 0..15 {

@@ -43,7 +43,6 @@ fn cover(pixels: [usize; 2], cells: [usize; 2]) -> [Cut; 2] {
     })
 }
 
-/// The whole picture.
 fn whole(pixels: [usize; 2], cells: [usize; 2]) -> [Cut; 2] {
     [0, 1].map(|i| Cut {
         pixels: pixels[i],

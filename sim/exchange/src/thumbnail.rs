@@ -59,7 +59,7 @@ struct Blocks {
 /// Greatest number of cells across a block.
 const BLOCK: usize = 8;
 /// Number of cached colours beyond twice those of a whole surface: 12 MB.
-const SPARE: usize = 1 << 20;
+const SPARE_COLOURS: usize = 1 << 20;
 
 impl HistoryPictures {
     /// A surface with its colours alone, in sRGB, with at most `side` pixels either way; `None` if there is no such
@@ -103,7 +103,7 @@ impl HistoryPictures {
                 .for_each(|row| small.add_light(row));
         }
         let kept: usize = self.tiles.values().map(|own| own.light.len()).sum();
-        if kept > 2 * shown + SPARE {
+        if kept > 2 * shown + SPARE_COLOURS {
             let drawn = self.drawn;
             self.tiles.retain(|_, own| own.used == drawn);
         }

@@ -16,7 +16,7 @@
 pub enum Medium {
     /// Part of the probe.
     Probe,
-    /// Fluid.
+    /// Cell filled with fluid.
     Fluid,
     /// Air or another solid, without effect on the probe.
     Other,

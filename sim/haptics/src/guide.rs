@@ -19,7 +19,7 @@ use maulstick_types::limits::FARTHEST_M;
 use crate::contact::HandleState;
 
 /// Greatest number of points of a path.
-const MOST: usize = GuideModel::POINTS_MOST;
+const POINTS_MAX: usize = GuideModel::POINTS_MOST;
 /// Least length of a piece within the plane, m; shorter ones are dropped.
 const SHORTEST_M: f64 = 1e-4;
 
@@ -40,7 +40,7 @@ pub struct GuideBounds {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guide {
     /// Points within the plane through the origin.
-    points: [DVec3; MOST],
+    points: [DVec3; POINTS_MAX],
     count: usize,
     normal: DVec3,
     head_length: f64,
@@ -88,7 +88,7 @@ impl Guide {
         if !model.points_m.iter().flatten().all(near) {
             return Err("a point is not finite or more than 10 m away");
         }
-        if !(2..=MOST).contains(&model.points_m.len()) {
+        if !(2..=POINTS_MAX).contains(&model.points_m.len()) {
             return Err("a path has 2 to 16 points");
         }
         if !normal.is_finite() || (normal.length() - 1.0).abs() > 1e-6 {
@@ -102,7 +102,7 @@ impl Guide {
             return Err("the time to live is longer than a second");
         }
         let mut guide = Self {
-            points: [DVec3::ZERO; MOST],
+            points: [DVec3::ZERO; POINTS_MAX],
             count: 0,
             normal,
             head_length: model.head_length_m,
@@ -190,7 +190,7 @@ impl Guide {
         let place = self.place(handle);
         let mut foot = self.foot(from.piece.min(self.last_piece()), place);
         // The distance falls at each step, and there are no more steps than pieces.
-        for _ in 0..MOST {
+        for _ in 0..POINTS_MAX {
             let ahead = foot.along >= 1.0 && foot.piece < self.last_piece();
             let behind = foot.along <= 0.0 && foot.piece > 0;
             let other = match (ahead, behind) {

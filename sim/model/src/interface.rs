@@ -169,7 +169,7 @@ pub trait PaintModel: Send {
         None
     }
     /// The reason why the backend changed, returned once. No paint is lost by it.
-    fn take_fall(&mut self) -> Option<String> {
+    fn take_backend_change(&mut self) -> Option<String> {
         None
     }
     /// A limit of the backend that its steps have met, for the journal; returned once.

@@ -118,7 +118,7 @@ impl PathStepper {
         let mut next = HeadPose::default();
         to.pose(head, self.scale, &mut next);
         if self.doublings > 0 {
-            self.turn(head, &next, &mut step);
+            self.step_to_reversal(head, &next, &mut step);
         }
         let motion = motion(&self.stepped, &next);
         if motion > LEAP_M / (self.scale.cell_m * self.scale.zoom) {
@@ -142,7 +142,12 @@ impl PathStepper {
     }
 
     /// Steps to the point where the brush turns within a long step: the path there and back would be lost.
-    fn turn(&mut self, head: &Head, next: &HeadPose, step: &mut impl FnMut(Sweep<'_>, u32)) {
+    fn step_to_reversal(
+        &mut self,
+        head: &Head,
+        next: &HeadPose,
+        step: &mut impl FnMut(Sweep<'_>, u32),
+    ) {
         let Some(ahead) = self.ahead.take() else {
             return;
         };

@@ -23,7 +23,7 @@ const HEXAGONAL: f64 = 1.074_569_931_823_542;
 /// Time that the brush hovers over the first stroke, ns.
 const HOVER_NS: u64 = 200_000_000;
 /// Shares of the variation across its row that a stroke keeps: the largest with which it stays within the outline.
-const KEPT: [f64; 5] = [1.0, 0.75, 0.5, 0.25, 0.0];
+const VARIATION_SHARES: [f64; 5] = [1.0, 0.75, 0.5, 0.25, 0.0];
 /// Tolerance of places within the outline, m.
 const TOLERANCE_M: f64 = 1e-9;
 
@@ -254,7 +254,7 @@ fn laid(
     };
     let clearance = fill.clearance_m - TOLERANCE_M;
     let fits = |kept: &f64| warped(*kept).iter().all(|at| outline.holds(*at, clearance));
-    let kept = KEPT.into_iter().find(fits).unwrap_or(0.0);
+    let kept = VARIATION_SHARES.into_iter().find(fits).unwrap_or(0.0);
     let slower = factor.max(LEAST_TIME_SHARE);
     let begin_ns = own.first().map_or(0, |first| first.time_ns);
     let mut last_ns = None;

@@ -89,10 +89,10 @@ impl Placement {
 
     /// The image of a direction or a difference.
     fn vector(&self, v: DVec2) -> DVec2 {
-        self.turn(v) * self.scale
+        self.rotate(v) * self.scale
     }
 
-    fn turn(&self, v: DVec2) -> DVec2 {
+    fn rotate(&self, v: DVec2) -> DVec2 {
         match self.turn_rad {
             0.0 => v,
             turn => {
@@ -124,7 +124,7 @@ impl Placement {
         let along = self.vector(velocity.truncate());
         placed.velocity_m_s = along.extend(velocity.z).to_array();
         let force = DVec3::from_array(sample.force_n);
-        placed.force_n = self.turn(force.truncate()).extend(force.z).to_array();
+        placed.force_n = self.rotate(force.truncate()).extend(force.z).to_array();
         placed
     }
 
@@ -140,7 +140,7 @@ impl Placement {
                     let (s, c) = sin_cos(angle);
                     s / c
                 };
-                let axis = self.turn(DVec2::from_array(tilt_rad.map(slope)));
+                let axis = self.rotate(DVec2::from_array(tilt_rad.map(slope)));
                 // Two steep tilts may become one that is steeper than a sample may have.
                 let tilt = |slope: f64| atan2(slope, 1.0).clamp(-STEEPEST_RAD, STEEPEST_RAD);
                 *tilt_rad = axis.to_array().map(tilt);

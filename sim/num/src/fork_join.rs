@@ -24,9 +24,7 @@ const AWAKE: u32 = SPIN_LIMIT + 200;
 /// share.
 const MOST_THREADS: usize = 16;
 
-/// No job.
 const EMPTY: u32 = 0;
-/// A job waits.
 const OFFERED: u32 = 1;
 /// A thread does the job.
 const TAKEN: u32 = 2;

@@ -10,9 +10,9 @@ pub trait Lanes:
 {
     /// The same eight times.
     fn splat(value: f32) -> Self;
-    /// These.
+    /// Lanes with the values of an array.
     fn of(values: &[f32; 8]) -> Self;
-    /// As an array.
+    /// Values of the lanes, as an array.
     fn values(self) -> [f32; 8];
     /// Without their signs.
     fn abs(self) -> Self;

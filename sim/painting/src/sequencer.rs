@@ -184,7 +184,7 @@ impl Sequencer {
             self.painting.forget_loads(brush);
         }
         let painted = self.painting.state(brush, header.epoch, state);
-        self.tell_fall();
+        self.publish_backend_change();
         self.painting.note_contact(brush);
         painted
     }

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::io::Cursor;
 use std::path::Path;
 
-use crash_vfs::{Deed, FileKind, Image, Log, VFS, watch, watch_by_default};
+use crash_vfs::{FileKind, FileOperation, Image, Log, VFS, watch, watch_by_default};
 use maulstick_salvage::sqlite::{Scan, Value};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;
@@ -140,7 +140,7 @@ fn committed_rows_outlive_a_power_cut_at_any_point() {
     let counts = [FileKind::Main, FileKind::Wal, FileKind::Journal].map(|kind| {
         let syncs = ops
             .iter()
-            .filter(|op| op.file == kind && op.deed == Deed::Sync);
+            .filter(|op| op.file == kind && op.operation == FileOperation::Sync);
         syncs.count()
     });
     assert!(

@@ -28,7 +28,7 @@ impl Autosave {
             serial: 0,
             saved_ns: 0,
         };
-        autosave.hand_over(sequencer);
+        autosave.save_to_document(sequencer);
         autosave
     }
 
@@ -51,7 +51,7 @@ impl Autosave {
         }
     }
 
-    fn hand_over(&mut self, sequencer: &mut Sequencer) {
+    fn save_to_document(&mut self, sequencer: &mut Sequencer) {
         let painting = sequencer.painting_mut();
         if self.document.wants_all() {
             painting.tell_all_again();
@@ -77,7 +77,7 @@ impl Autosave {
         let is_new = sequencer.serial() != self.serial || self.document.wants_all();
         if due && is_new && self.document.is_ready() {
             self.saved_ns = now_ns;
-            self.hand_over(sequencer);
+            self.save_to_document(sequencer);
         }
     }
 
@@ -86,12 +86,12 @@ impl Autosave {
         self.document.record(sequencer.take_records());
         self.document.flush();
         if self.document.is_ready() {
-            self.hand_over(sequencer);
+            self.save_to_document(sequencer);
             self.document.flush();
         }
         // The file may have turned out to lack a part of the painting: then it gets all of it.
         if self.document.wants_all() && self.document.is_ready() {
-            self.hand_over(sequencer);
+            self.save_to_document(sequencer);
             self.document.flush();
         }
         self.document.is_saved()

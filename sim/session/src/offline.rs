@@ -16,7 +16,7 @@ use maulstick_types::{Flags, Header, Message as _, Mixture, Origin, name_hash};
 use crate::ticker::Ticker;
 
 /// Greatest number of states by which the brush may be ahead of the paint.
-const AHEAD: usize = 256;
+const STATES_AHEAD_MAX: usize = 256;
 
 /// Brush and paint, driven by samples.
 #[derive(Debug)]
@@ -115,7 +115,7 @@ impl Offline {
         self.ticker.pause();
         let player = [self.player.source, self.player.epoch];
         self.sequencer.begin_own_take(&self.brush, player, loads)?;
-        self.follow_scene();
+        self.update_scene();
         Ok(())
     }
 
@@ -137,12 +137,12 @@ impl Offline {
     /// [`EditError`] where the painting refuses it.
     pub fn edit(&mut self, edit: impl Into<Edit>) -> Result<Applied, EditError> {
         let applied = self.sequencer.edit(edit)?;
-        self.follow_scene();
+        self.update_scene();
         Ok(applied)
     }
 
     /// Updates the brush from the scene.
-    fn follow_scene(&mut self) {
+    fn update_scene(&mut self) {
         let scene = self.sequencer.painting_mut().scene();
         self.model.set_scene(scene);
         self.model.tune(scene.tuning(&self.brush));
@@ -167,7 +167,7 @@ impl Offline {
     /// # Errors
     /// [`EditError`] where the painting refuses its state.
     pub fn sample(&mut self, event_ns: u64, sample: &StylusSample) -> Result<(), EditError> {
-        self.follow_with(Flags::NONE, &[(event_ns, sample)], |_, _| {})
+        self.follow_samples(Flags::NONE, &[(event_ns, sample)], |_, _| {})
     }
 
     /// Ends a take whose samples came one by one: a pen that still waits to be set down is.
@@ -195,11 +195,11 @@ impl Offline {
         samples: &[(u64, &StylusSample)],
         each: impl FnMut(&mut Sequencer, usize),
     ) -> Result<(), EditError> {
-        self.follow_with(Flags::LAST, samples, each)
+        self.follow_samples(Flags::LAST, samples, each)
     }
 
     /// Follows samples; the last of them has the flags `last`.
-    fn follow_with(
+    fn follow_samples(
         &mut self,
         last: Flags,
         samples: &[(u64, &StylusSample)],
@@ -234,7 +234,7 @@ impl Offline {
                 .try_for_each(paint);
         }
         std::thread::scope(|scope| {
-            let (bent, states) = mpsc::sync_channel(AHEAD);
+            let (bent, states) = mpsc::sync_channel(STATES_AHEAD_MAX);
             scope.spawn(move || {
                 for state in samples.iter().enumerate().flat_map(&mut bend) {
                     // The painter has stopped, and reports its error.

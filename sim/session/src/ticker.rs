@@ -2,7 +2,6 @@
 
 use maulstick_painting::clock::TICKS_A_SECOND;
 
-/// A second, ns.
 const SECOND_NS: u64 = 1_000_000_000;
 
 /// Turns the time of a clock into ticks.

@@ -66,7 +66,7 @@ impl Desk {
 
     fn edit(&mut self, edit: impl Into<maulstick_types::Edit>) {
         self.offline.edit(edit).expect("done");
-        self.turn();
+        self.autosave_now();
     }
 
     fn load(&mut self, mixture: &str) {
@@ -95,10 +95,10 @@ impl Desk {
             self.offline.sample(self.now_ns, &sample).expect("painted");
         }
         self.now_ns += 5000 * MS;
-        self.turn();
+        self.autosave_now();
     }
 
-    fn turn(&mut self) {
+    fn autosave_now(&mut self) {
         self.now_ns += 1000 * MS;
         self.autosave
             .turn(self.offline.sequencer_mut(), self.now_ns);
@@ -131,7 +131,7 @@ fn paint(path: &Path) {
         ..Dry::whole(CANVAS)
     });
     desk.offline.wait(60, |_| {});
-    desk.turn();
+    desk.autosave_now();
     desk.close();
     let mut desk = Desk::at(path);
     desk.load("Pyrrole Red");

@@ -62,9 +62,7 @@ use maulstick_rig::UserError;
 use crate::measurements::Measurements;
 use crate::report::Report;
 
-/// Default paint model.
 const MODEL: &str = "impasto";
-/// Default backend.
 const BACKEND: &str = "cpu";
 
 /// The command that this program carries out.

@@ -40,7 +40,7 @@ const ROUNDS: usize = 7;
 /// Sides of a footprint, cells, and numbers of the brush's strips.
 const SIZES: [(usize, usize); 2] = [(26, 64), (88, 256)];
 /// Side and number of strips of a footprint that justifies several cores.
-const WIDE: (usize, usize) = (352, 1024);
+const WIDE_FOOTPRINT: (usize, usize) = (352, 1024);
 /// Threads that are compared with one.
 const THREADS: [usize; 3] = [2, 4, 8];
 
@@ -270,7 +270,7 @@ fn cells(report: &mut Report, means: &Means) -> Result<(), UserError> {
 
 /// Speed-up by several cores with a wide brush, as far as there are that many.
 fn speed_up(report: &mut Report, cores: usize, means: &Means) -> Result<(), UserError> {
-    let (side, strips) = WIDE;
+    let (side, strips) = WIDE_FOOTPRINT;
     let mut round = fitted(side, strips, means)?;
     round.paint()?;
     for threads in THREADS {
@@ -291,7 +291,6 @@ fn speed_up(report: &mut Report, cores: usize, means: &Means) -> Result<(), User
     Ok(())
 }
 
-/// Both sizes.
 fn rounds(report: &mut Report, means: &Means) -> Result<(), UserError> {
     for (side, strips) in SIZES {
         let mut round = fitted(side, strips, means)?;

@@ -23,7 +23,7 @@ use crate::thread_cpu::{process_cpu, thread_cpu};
 const BRUSH_MM: f64 = 10.0;
 const DEPTH_SHARE: f64 = 0.5;
 /// Largest share of each.
-const MOST: f64 = 0.05;
+const SHARE_MAX: f64 = 0.05;
 /// Runs of which the median is reported.
 const RUNS: usize = 5;
 
@@ -69,7 +69,7 @@ pub(crate) fn run(
         ("recording.png_share", packing(cells as usize, pixels)?),
         ("recording.tooth_share", tooth(&setup)?),
     ] {
-        report.beside(name, took / whole, "", ("target", MOST));
+        report.beside(name, took / whole, "", ("target", SHARE_MAX));
     }
     Ok(())
 }

@@ -61,7 +61,7 @@ const END_S: f64 = 4.6;
 /// Motion of the plane while the hand is kicked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
-    /// It rests.
+    /// The plane rests.
     Still,
     /// It tilts to and fro.
     Tilting,
@@ -171,7 +171,7 @@ pub struct Outcome {
     /// Steady force along the normal, without the guide's, by stiffness times depth.
     pub share: f64,
     /// Stiffness that the servo reported, N/m.
-    pub told_n_m: f64,
+    pub reported_n_m: f64,
     /// Fault that latched the force at zero, if any.
     pub fault: Option<Fault>,
 }
@@ -214,13 +214,13 @@ impl Wall {
 }
 
 /// The wall of the models, without sampling: a change is spread over the recovery time.
-struct Told {
+struct WallModel {
     wall: Wall,
     correction: DVec3,
     speed: f64,
 }
 
-impl Told {
+impl WallModel {
     fn age(&mut self) {
         let (size, shrunk) = (self.correction.length(), self.speed * DT);
         if size > shrunk {
@@ -281,7 +281,6 @@ impl Run {
         tip + DVec3::Z * HEAD_M
     }
 
-    /// The servo's bounds.
     fn limits(&self) -> Limits {
         // A force that is sent elsewhere shows its effect without the guards that would stop it.
         let guarded = match self.path {
@@ -326,20 +325,20 @@ impl Run {
         let mut servo = Servo::new(limits);
         let mut plant = Plant::omni(self.hand, self.target(0.0));
         let tip = |plant: &Plant| plant.true_position() - DVec3::Z * HEAD_M;
-        let mut told = Told {
+        let mut model_wall = WallModel {
             wall: self.wall(0.0),
             correction: DVec3::ZERO,
             speed: 0.0,
         };
         let mut link = Link::new(self.rate_hz, self.jitter, 1);
         let (mut extent, mut force) = (Extent::NONE, DVec3::ZERO);
-        let (mut push, mut depth, mut told_n_m) = (0.0, 0.0, f64::MAX);
+        let (mut push, mut depth, mut reported_n_m) = (0.0, 0.0, f64::MAX);
         let (mut net_j, mut most_j): (f64, f64) = (0.0, 0.0);
         let mut fault = None;
         for number in 0..(END_S / DT) as usize {
             let s = number as f64 * DT;
             let handle = plant.handle();
-            told.age();
+            model_wall.age();
             if let Some(wall) = link.newest(s, |s| self.wall(s)) {
                 servo.receive(wall.contact(friction, live_s)?, Sender::Same);
                 if let Some(guide) = self.guide {
@@ -349,7 +348,7 @@ impl Run {
                     stiffness: wall.stiffness.min(limits.max_stiffness_n_m),
                     ..wall
                 };
-                told.change(given, handle.position - DVec3::Z * HEAD_M);
+                model_wall.change(given, handle.position - DVec3::Z * HEAD_M);
             }
             let (wanted, tick) = servo.step(&handle, DT);
             fault = fault.or(tick.fault);
@@ -361,8 +360,8 @@ impl Run {
             let (from, before_j) = (tip(&plant), plant.given_j());
             plant.advance(force, self.target(s), DT);
             let to = tip(&plant);
-            let models =
-                told.wall.stored(from) - told.wall.stored(to) + told.correction.dot(to - from);
+            let models = model_wall.wall.stored(from) - model_wall.wall.stored(to)
+                + model_wall.correction.dot(to - from);
             let guided = self
                 .guide
                 .map_or(0.0, |guide| guide.stored(from) - guide.stored(to));
@@ -371,16 +370,16 @@ impl Run {
             if (STILL_S[0]..STILL_S[1]).contains(&s) {
                 extent.include(to);
                 let guided = self.guide.map_or(DVec3::ZERO, |guide| guide.force(to));
-                push += (force - guided).dot(told.wall.normal);
-                depth += told.wall.depth(to);
-                told_n_m = told_n_m.min(tick.stiffness_n_m);
+                push += (force - guided).dot(model_wall.wall.normal);
+                depth += model_wall.wall.depth(to);
+                reported_n_m = reported_n_m.min(tick.stiffness_n_m);
             }
         }
         Ok(Outcome {
             wobble_m: extent.peak_to_peak_m(),
             net_j: most_j,
             share: push / (self.stiffness * depth),
-            told_n_m,
+            reported_n_m,
             fault,
         })
     }

@@ -18,7 +18,7 @@ fn every_hand_is_still_gets_no_energy_and_feels_its_wall() {
         // A reduced force is reported.
         let told = run.stiffness.min(MAX_STIFFNESS_N_M);
         assert!(
-            (outcome.told_n_m - told).abs() < 1e-9,
+            (outcome.reported_n_m - told).abs() < 1e-9,
             "{run:?}: {outcome:?}"
         );
     }

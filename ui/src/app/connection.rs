@@ -62,7 +62,6 @@ impl Connection {
         self.fetcher.exchange(&mut rig.live.thumbnails, now_ns);
     }
 
-    /// Leaves the rig.
     pub(super) fn leave(&mut self) {
         if let Some(member) = self.member.take() {
             member.leave();

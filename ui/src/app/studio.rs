@@ -12,7 +12,6 @@ use crate::widgets::context::PanelContext;
 pub(super) struct Studio {
     /// State of the rig.
     pub(super) rig: RigState,
-    /// Requests to it.
     pub(super) requests: Requests,
     /// Settings that are remembered.
     pub(super) preferences: Preferences,

@@ -92,7 +92,6 @@ impl Browser {
         self.folder.go(split(&self.text).0);
     }
 
-    /// The whole path.
     #[must_use]
     pub(crate) fn path(&self) -> PathBuf {
         paths::whole(&self.text)

@@ -23,13 +23,10 @@ enum Fate {
 /// Decision of the painter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Decision {
-    /// Nothing yet.
     None,
-    /// The window stays.
     Stay,
     /// The painting is to get a name first.
     Name,
-    /// The window closes.
     Close,
 }
 
@@ -59,7 +56,6 @@ impl ClosePainting {
         Some(Self { fate })
     }
 
-    /// Shows the dialog.
     pub(super) fn show(&mut self, context: &Context) -> Decision {
         let mut names = false;
         let answer = dialog::show(context, tr!("Close Maulstick"), |ui| {

@@ -50,7 +50,6 @@ pub(crate) fn wrong(visuals: &Visuals) -> Color32 {
     }
 }
 
-/// Shows a dialog.
 pub(crate) fn show(
     context: &Context,
     title: &str,

@@ -30,11 +30,9 @@ pub(crate) enum Dropped {
     Recording(PathBuf),
     /// A brush file: the brush in hand becomes it.
     Brush(Box<BrushFile>),
-    /// Something else.
     Nothing {
         /// Description of the file.
         what: String,
-        /// Advice.
         help: String,
     },
 }

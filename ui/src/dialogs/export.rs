@@ -160,7 +160,6 @@ impl ExportPicture {
         }
     }
 
-    /// Shows the dialog.
     pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
         let mut taken = None;
         let answer = dialog::show(context, tr!("Export"), |ui| {

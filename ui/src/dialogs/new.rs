@@ -167,7 +167,6 @@ impl NewPainting {
         paths::named(&path)
     }
 
-    /// Shows the dialog.
     pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
         let answer = dialog::show(context, tr!("New painting"), |ui| {
             let entered = self.fields(ui);

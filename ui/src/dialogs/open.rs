@@ -50,7 +50,6 @@ impl OpenPainting {
         self
     }
 
-    /// Lists the sketches.
     pub(crate) fn list_sketches(&mut self) {
         if let Some(folder) = &self.sketches {
             self.browser.set(format!("{}/", paths::shown(folder)));
@@ -92,7 +91,6 @@ impl OpenPainting {
         .into())
     }
 
-    /// Shows the dialog.
     pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
         let mut taken: Option<PathBuf> = None;
         let answer = dialog::show(context, tr!("Open a painting"), |ui| {

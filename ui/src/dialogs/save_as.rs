@@ -74,7 +74,6 @@ impl SaveAs {
         Ok(RigCommand::SaveAs(command::SaveAs { path, replace }).into())
     }
 
-    /// Shows the dialog.
     pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
         let mut taken = None;
         let answer = dialog::show(context, tr!("Save under another name"), |ui| {

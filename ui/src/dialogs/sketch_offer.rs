@@ -23,7 +23,6 @@ const WIDTH: f32 = 300.0;
 /// Choice of the painter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Choice {
-    /// Continue this one.
     Open(PathBuf),
     /// All of them are to be seen.
     All,
@@ -53,7 +52,6 @@ enum State {
     Done,
 }
 
-/// The offer.
 #[derive(Debug, Default)]
 pub(super) struct SketchOffer {
     state: State,

@@ -19,7 +19,6 @@ struct Down {
     before: Option<BrushHandling>,
 }
 
-/// The cleaning key.
 #[derive(Debug, Default)]
 pub(crate) struct CleanKey {
     down: Option<Down>,

@@ -8,9 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Action {
-    /// A new painting.
     New,
-    /// Another painting.
     Open,
     /// Save, and confirm that all is saved.
     Save,
@@ -20,7 +18,6 @@ pub(crate) enum Action {
     Export,
     /// Record the session, or end that.
     Record,
-    /// Play a recording.
     Play,
     /// Choose a motion, and put it on the canvas.
     Motions,
@@ -34,9 +31,7 @@ pub(crate) enum Action {
     Undo,
     /// The newest undo back.
     Redo,
-    /// A smaller brush.
     Smaller,
-    /// A larger brush.
     Larger,
     /// The next brush of the rack.
     NextBrush,
@@ -68,17 +63,13 @@ pub(crate) enum Action {
     Mirror,
     /// The keyboard goes to the panels.
     Focus,
-    /// The whole screen.
     FullScreen,
     /// The whole screen with neither panels, rack nor bar, and back.
     Alone,
-    /// Show the keys.
     Keys,
     /// Show the steps of a first painting.
     Tutorial,
-    /// About the program.
     About,
-    /// Close the window.
     Quit,
     /// No device gives force any more.
     ForceOff,
@@ -121,9 +112,7 @@ impl Action {
 /// A key and what it does.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Binding {
-    /// Its action.
     pub act: Action,
-    /// The key.
     pub shortcut: KeyboardShortcut,
     /// Its description in a painter's words.
     pub words: &'static str,

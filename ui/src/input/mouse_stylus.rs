@@ -22,13 +22,11 @@ const FRAME_NS: u64 = 90_000_000;
 pub(crate) struct Pointer {
     /// On the desk, m.
     pub at: [f64; 3],
-    /// The primary button.
     pub pressed: bool,
     /// Turn of the brush about its axis, rad.
     pub twist_rad: f64,
 }
 
-/// The mouse.
 pub(crate) struct Mouse {
     samples: CreditSender<StylusSample>,
     others: Receiver<StylusSample>,
@@ -220,7 +218,6 @@ mod tests {
     use super::*;
 
     const SECOND: u64 = 1_000_000_000;
-    /// The brush touches.
     const PRESSED: Pointer = Pointer {
         at: [0.0; 3],
         pressed: true,

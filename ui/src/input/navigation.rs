@@ -47,7 +47,6 @@ struct Drag {
 /// Surroundings of the pointer.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Around<'a> {
-    /// The view.
     pub view: &'a View,
     /// The surfaces with their placements.
     pub surfaces: &'a [Surface],
@@ -55,11 +54,9 @@ pub(crate) struct Around<'a> {
     pub free: bool,
     /// True while the pointer is over a panel.
     pub over_panel: bool,
-    /// The keys.
     pub keys: &'a Keymap,
 }
 
-/// The free hand.
 #[derive(Debug, Default)]
 pub(crate) struct Navigation {
     drag: Option<Drag>,

@@ -23,7 +23,6 @@ struct Drag {
     from_mm: f64,
 }
 
-/// The drag.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SizeDrag {
     drag: Option<Drag>,

@@ -18,7 +18,6 @@ const WIDTH: f32 = 240.0;
 /// Distance from the rack and from the upper edge when it opens, points.
 const ASIDE: f32 = 40.0;
 
-/// The window.
 #[derive(Debug)]
 pub(crate) struct ColourWindow {
     shown: bool,

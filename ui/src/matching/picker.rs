@@ -31,7 +31,6 @@ pub(crate) struct Ask {
 /// A mixture near the colour.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Match {
-    /// The mixture.
     pub mixture: Mixture,
     /// Its difference from the colour, ΔE₀₀.
     pub delta_e: f64,
@@ -105,7 +104,6 @@ pub(crate) fn search(ask: &Ask, library: &PaintLibrary) -> Matches {
     Ok(all.into_iter().map(shown).collect())
 }
 
-/// The searches requested.
 #[derive(Debug, Default)]
 pub(crate) struct Picker {
     asked: Option<Ask>,
@@ -121,7 +119,6 @@ impl Picker {
         }
     }
 
-    /// Forgets the request.
     pub(crate) fn forget(&mut self) {
         (self.asked, self.found) = (None, None);
     }

@@ -21,7 +21,6 @@ const HEIGHT: f32 = 280.0;
 const PICTURE: Vec2 = vec2(92.0, 92.0);
 const LINE: f32 = 18.0;
 
-/// The dialog.
 #[derive(Debug)]
 pub(crate) struct ChooseMotion {
     folder: String,
@@ -35,7 +34,6 @@ pub(crate) struct ChooseMotion {
 pub(crate) struct Chosen {
     /// True if it closes.
     pub closes: bool,
-    /// The chosen motion.
     pub chosen: Option<Motion>,
 }
 
@@ -53,7 +51,6 @@ impl ChooseMotion {
         }
     }
 
-    /// Shows it.
     pub(crate) fn show(&mut self, context: &Context, work: &mut PanelContext<'_>) -> Chosen {
         let folder = paths::whole(&self.folder);
         let library = match self.library.take() {

@@ -19,7 +19,6 @@ const LARGEST: u64 = 32 << 20;
 /// A take that can be put down.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Motion {
-    /// Its file.
     pub path: PathBuf,
     /// Its strokes.
     pub drawn: DrawnPaths,
@@ -34,14 +33,12 @@ pub(crate) enum Known {
     Coming,
     /// It is no take that paints.
     Unusable,
-    /// It is here.
     Here(Motion),
 }
 
 /// The takes of a folder.
 #[derive(Debug)]
 pub(crate) struct Library {
-    /// The folder.
     pub folder: PathBuf,
     /// Length of the head that a 6-DOF stylus holds, m.
     head_m: f64,

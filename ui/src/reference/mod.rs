@@ -60,7 +60,6 @@ impl Default for Look {
     }
 }
 
-/// The reference picture.
 #[derive(Debug, Default)]
 pub(crate) struct Reference {
     pinned: Pinned,

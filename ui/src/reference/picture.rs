@@ -123,12 +123,10 @@ impl fmt::Debug for Picture {
 /// A pinned picture while it loads.
 #[derive(Default)]
 pub(crate) enum Pinned {
-    /// No picture.
     #[default]
     Nothing,
     /// It is being read.
     Coming(PathBuf, BackgroundTask<Result<Picture, String>>),
-    /// It is here.
     Here(PathBuf, Picture, TextureHandle),
     /// It cannot be shown, and why.
     Failed(PathBuf, String),

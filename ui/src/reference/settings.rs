@@ -12,7 +12,6 @@ use super::LEAST;
 pub struct ReferencePreferences {
     /// True while it is shown.
     pub shown: bool,
-    /// The picture.
     pub path: Option<PathBuf>,
     /// Position of its frame, points from the window's upper left corner.
     pub place: [f32; 2],

@@ -21,7 +21,6 @@ const ASK: Duration = Duration::from_millis(1);
 pub struct Holding {
     /// The journal entries below this index.
     pub journal: u64,
-    /// The brush states.
     pub holds: Vec<FrameHolds>,
 }
 

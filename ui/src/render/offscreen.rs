@@ -58,7 +58,7 @@ impl Offscreen {
         })
     }
 
-    /// The device.
+    /// The device that draws.
     #[must_use]
     pub fn gpu(&self) -> &Gpu {
         &self.gpu

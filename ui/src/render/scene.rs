@@ -69,7 +69,6 @@ pub(crate) struct Seen<'a> {
 
 /// Source of frames, and receiver of their reports.
 pub(crate) struct Source {
-    /// The bus.
     pub bus: Arc<dyn Bus>,
     /// The query for frames.
     pub topic: String,

@@ -26,7 +26,7 @@ pub enum Part {
 pub struct AtlasState {
     /// Its number: another one is another picture.
     pub number: u64,
-    /// Its level.
+    /// Level of the pyramid, 0 the finest.
     pub level: u32,
     /// Tiles that it has room for, across and up.
     pub room: [u32; 2],
@@ -41,7 +41,7 @@ pub struct AtlasState {
 pub struct Asked {
     /// The atlas it is for.
     pub part: Part,
-    /// Its level.
+    /// Level of the pyramid, 0 the finest.
     pub level: u32,
     /// Tiles.
     pub tiles: TileRect,

@@ -60,9 +60,9 @@ struct TrackedBrush {
 /// A brush in the hand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BrushPose<'a> {
-    /// Its name.
+    /// Name of the brush.
     pub name: &'a str,
-    /// Its file.
+    /// Description of the brush.
     pub file: &'a BrushFile,
     /// The surface below.
     pub plane: Plane,

@@ -42,7 +42,6 @@ enum Made {
     Removed(String),
 }
 
-/// Makes a change.
 fn carry_out(change: &SetupChange, rig: &str) -> Result<Made, UserError> {
     match change {
         SetupChange::Allow => allow().map(|()| Made::Allowed),

@@ -29,12 +29,7 @@ enum DeviceFault {
     #[default]
     None,
     /// There is no device.
-    Trouble {
-        /// The fault.
-        what: String,
-        /// The remedy.
-        help: String,
-    },
+    Trouble { what: String, help: String },
     /// It gives no force: the faults that it has latched.
     NoForce(String),
 }

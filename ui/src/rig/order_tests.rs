@@ -34,7 +34,6 @@ use rand_pcg::rand_core::Rng as _;
 const MS: u64 = 1_000_000;
 const START_NS: u64 = 1_000_000_000_000;
 const BRUSH: &str = "main";
-/// Changes in all.
 const CHANGES: usize = 500;
 /// The window looks at its queue so often, ms.
 const FRAME_MS: u64 = 16;

@@ -41,7 +41,6 @@ pub(crate) struct RigBrush {
 /// Contact of a brush with a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BrushContact {
-    /// It is lifted.
     Lifted,
     /// A hand has it on a surface.
     Held,

@@ -18,7 +18,6 @@ use crate::widgets::context::PanelContext;
 
 /// Time that a button or an arrow key goes, s.
 const SKIP_S: f64 = 5.0;
-/// The rates.
 const RATES: [Rate; 6] = [
     Rate::Times(0.25),
     Rate::Times(0.5),
@@ -83,7 +82,6 @@ impl Control {
     }
 }
 
-/// The bar.
 #[derive(Debug, Default)]
 pub(crate) struct TransportBar {
     /// Place of the slider while it is dragged, s: a seek backwards paints the session again, so only the place where

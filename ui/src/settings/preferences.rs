@@ -28,7 +28,7 @@ const RECENT: usize = 12;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
-    /// The window itself.
+    /// Size, sides and theme of the window.
     #[serde(flatten)]
     pub window: WindowPreferences,
     /// Brushes and paints.
@@ -38,14 +38,14 @@ pub struct Preferences {
     pub has_painted: bool,
     /// All axes that pens over the window have sensed, bits of `axes`.
     pub pen_senses: u32,
-    /// The keys.
+    /// Shortcuts of actions.
     pub keys: Keymap,
     /// Paintings that were open, the newest first.
     pub recent: Vec<PathBuf>,
     /// Folder of motions; absent for the usual one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motions: Option<PathBuf>,
-    /// The reference picture.
+    /// Reference picture and its window.
     pub reference: ReferencePreferences,
     /// Tracing pictures of the paintings.
     pub tracings: Tracings,

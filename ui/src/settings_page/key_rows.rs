@@ -28,7 +28,6 @@ enum Waits {
     NotHeld,
 }
 
-/// The rows.
 #[derive(Debug, Default)]
 pub(super) struct KeyRows {
     waits: Waits,

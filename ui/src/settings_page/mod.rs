@@ -36,7 +36,6 @@ pub(crate) struct SettingsPage {
 }
 
 impl SettingsPage {
-    /// Opens it.
     pub(crate) fn open(&mut self) {
         self.shown = Some(KeyRows::default());
     }

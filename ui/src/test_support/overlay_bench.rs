@@ -55,7 +55,6 @@ impl Bench {
         requests.map(command).collect()
     }
 
-    /// Answers a command.
     pub(crate) fn answer(&mut self, asked: &(String, Command), result: Result<Detail, UserError>) {
         let told = Outcome {
             request: Request::Command {
@@ -119,7 +118,6 @@ pub(crate) fn ctrl(harness: &mut Harness<'_, Bench>, key: Key, more: Modifiers) 
     listed(harness);
 }
 
-/// Presses a key.
 pub(crate) fn press(harness: &mut Harness<'_, Bench>, key: Key) {
     harness.key_press(key);
     harness.run_steps(3);
@@ -173,7 +171,6 @@ pub(crate) fn let_go(harness: &mut Harness<'_, Bench>, paths: &[&Path]) {
     harness.step();
 }
 
-/// A seeded fault.
 type Seeded<'a, T> = Box<dyn FnOnce(&mut T) + 'a>;
 
 /// Compares what is shown with its picture, and sees that `fault` makes another one.

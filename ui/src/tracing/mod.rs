@@ -24,12 +24,10 @@ use settings::Tracing;
 /// A tracing picture while it loads.
 #[derive(Debug, Default)]
 enum Slot {
-    /// No picture.
     #[default]
     Empty,
     /// It is being read.
     Coming(PathBuf, BackgroundTask<Result<Slide, String>>),
-    /// It is here.
     Here(PathBuf, Arc<Slide>),
     /// It cannot be shown.
     Failed(PathBuf),

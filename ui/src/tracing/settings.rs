@@ -14,7 +14,7 @@ const STRENGTH: f32 = 0.5;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Tracing {
-    /// Its file.
+    /// File of the picture.
     pub path: PathBuf,
     /// Opacity, 0 to 1.
     pub strength: f32,

@@ -12,7 +12,6 @@ use crate::view::camera::View;
 const ARM: f32 = 14.0;
 /// The corner that is asked for.
 const ASKED: Color32 = Color32::from_rgb(240, 120, 30);
-/// The others.
 const OTHER: Color32 = Color32::from_gray(150);
 
 /// Position of a corner on the desk, m, for a canvas that lies as it does in the beginning.

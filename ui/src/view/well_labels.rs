@@ -16,7 +16,6 @@ const GAP: f32 = 6.0;
 /// Names that are shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Shown {
-    /// All.
     All,
     /// The name of the well under a point of the desk, m.
     Under(DVec3),

@@ -23,7 +23,6 @@ enum Means {
     Drag,
     /// Its wheel is turned.
     Wheel,
-    /// A key.
     Key(Action),
 }
 

@@ -6,7 +6,6 @@ use std::fmt::Write as _;
 use maulstick_types::CatalogueEntry;
 use maulstick_types::wire::schema::{Field, Schema, Shape};
 
-/// The reader.
 const READER: &str = include_str!("../../../../msgs/c/maulstick.h");
 
 /// Looks up a message; the tables are static, as the functions of the reader are.

@@ -37,11 +37,9 @@ pub struct MeasureOptions {
 /// Subject of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Measure {
-    /// Topics in use.
     Topics,
     /// Rates of messages, and numbers of missing ones.
     Rates,
-    /// Delays of messages.
     Delays,
 }
 

@@ -9,7 +9,6 @@ use crate::commands::{print_json_line, say};
 /// Form in which the events of a recorder are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LogFormat {
-    /// Lines for people.
     Words,
     /// Lines of JSON for programs.
     Json,

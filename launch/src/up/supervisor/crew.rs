@@ -17,7 +17,6 @@ const FROZEN: Duration = Duration::from_secs(5);
 /// Action on the process of a node, by its name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Action {
-    /// Start it.
     Start(String),
     /// Ask it to end.
     Terminate(String),
@@ -30,7 +29,6 @@ pub(super) enum Action {
 pub(super) enum Exit {
     /// The rig continues without it.
     Rests,
-    /// It is restarted.
     Restarts,
     /// The rig ends with this code.
     EndsRig(i32),

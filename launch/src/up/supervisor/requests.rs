@@ -54,7 +54,6 @@ impl Supervisor {
         self.settings.write_or_warn();
     }
 
-    /// Begins a request.
     fn order(&mut self, asked: &CommandRequest, now: Instant) -> Result<Outcome, UserError> {
         if asked.after.is_some() {
             return Err(UserError::usage("the rig has no journal in which to wait")

@@ -83,7 +83,6 @@ pub(super) enum SwitchAction {
     RenewDevices,
     /// The painting is in this file.
     SavedAs(PathBuf),
-    /// Answer the client.
     Reply(Asker, Outcome),
 }
 
@@ -96,7 +95,6 @@ pub(super) struct Switch {
 
 #[derive(Debug, Default)]
 enum Stage {
-    /// No request.
     #[default]
     Idle,
     /// The painting is checked. The flag allows the painting in memory to be discarded.
@@ -115,7 +113,6 @@ enum Stage {
 #[derive(Debug)]
 struct Opening {
     plan: Box<Plan>,
-    /// The settings before.
     before: Box<RigConfig>,
     since: Instant,
 }

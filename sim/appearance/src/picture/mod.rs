@@ -37,7 +37,7 @@ impl Default for Export {
 /// Bits of a channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depth {
-    /// 8 bits.
+    /// 8 bits a channel.
     #[default]
     Eight,
     /// 16 bits, as two bytes, the higher one first.

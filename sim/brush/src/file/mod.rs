@@ -43,7 +43,7 @@ use self::check::within;
 use self::sections::{Contact, Force, Head, Load, Spines, Strips, Surface};
 
 /// Thickness of a ferrule, in widths of a strip, below which it is a line.
-const THIN: f64 = 1.5;
+const LINE_THICKNESS_STRIPS: f64 = 1.5;
 /// Width of a strip, cells, below which strips merge on the canvas.
 const MOST_CELLS_WIDE: f64 = 2.0;
 /// The fewest strips of a thinned head.
@@ -195,7 +195,7 @@ impl BrushFile {
     /// True if the strips stand in a line: the ferrule is hardly thicker than a strip is wide.
     #[must_use]
     pub fn is_line(&self) -> bool {
-        2e3 * self.half_thickness_m(0.0) < THIN * self.strips.width_mm
+        2e3 * self.half_thickness_m(0.0) < LINE_THICKNESS_STRIPS * self.strips.width_mm
     }
 
     /// The brush with half its strips, each twice as wide: the first half, which are spread as evenly as all. `None`

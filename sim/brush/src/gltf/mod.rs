@@ -176,7 +176,6 @@ fn surface(
     })
 }
 
-/// The whole brush.
 fn brush(
     node: &Node<'_>,
     bones: &Bones,

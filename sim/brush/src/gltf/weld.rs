@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 /// Distance of vertices to be merged, as a share of the mesh's size.
-const SAME: f64 = 1e-6;
+const WELD_DISTANCE_SHARE: f64 = 1e-6;
 /// Cosine of the angle, 30°, up to which two triangles of a quadrilateral face the same direction.
 const FLAT: f64 = 0.866;
 /// Least quality of a quadrilateral: 1 − |cos| of its most skewed corner, here about 32°.
@@ -19,7 +19,7 @@ pub(super) fn same(positions: &[DVec3]) -> Vec<usize> {
         (Some(low), Some(high)) => (high - low).length(),
         _ => 0.0,
     };
-    let near = (SAME * size).max(f64::MIN_POSITIVE);
+    let near = (WELD_DISTANCE_SHARE * size).max(f64::MIN_POSITIVE);
     let mut cells: BTreeMap<[i64; 3], Vec<usize>> = BTreeMap::new();
     let mut firsts = Vec::with_capacity(positions.len());
     for (number, at) in positions.iter().enumerate() {

@@ -8,7 +8,7 @@ use crate::spine::{Spine, SpineShape};
 
 /// Slip, in multiples of the rounding of friction, above which a sticking contact breaks loose: its force is then
 /// within .5 % of its bound.
-const LOOSE: f64 = 10.0;
+const SLIP_EPSILONS: f64 = 10.0;
 /// Slip, in multiples of the rounding of friction, below which a sliding contact sticks.
 const STUCK: f64 = 3.0;
 
@@ -131,7 +131,7 @@ impl ContactConstraint {
     /// true if that changes its friction. Forces below `least_n` count as none.
     ///
     /// A lifted contact keeps its anchor until the pose is settled, since without friction it may touch again.
-    pub(super) fn follow(
+    pub(super) fn update(
         &mut self,
         force_n: f64,
         p: DVec3,
@@ -141,7 +141,7 @@ impl ContactConstraint {
         let Some(anchor) = self.anchor else {
             return false;
         };
-        let loose = self.half_space.along(p - anchor).length() > LOOSE * settings.epsilon_m;
+        let loose = self.half_space.along(p - anchor).length() > SLIP_EPSILONS * settings.epsilon_m;
         let breaks = self.sticks && loose && settings.friction_static > settings.friction;
         self.sticks &= !loose;
         let lags = (force_n - self.force_n).abs() > LAG * force_n.max(least_n);

@@ -42,7 +42,7 @@ impl Solver {
             self.search.way.clear();
             let part = self.step.iter().map(|step| *step * fraction);
             self.search.way.extend(part);
-            self.turn(shape);
+            self.set_shape(shape);
             let tried = self.look(problem, shape, constraints);
             let aim = start + 1e-4 * fraction * slope.min(0.0) + noise;
             if merit(tried, &self.point.gaps) <= aim {
@@ -62,7 +62,7 @@ impl Solver {
     }
 
     /// The shape at the end of a trial step.
-    fn turn(&self, shape: &mut SpineShape) {
+    fn set_shape(&self, shape: &mut SpineShape) {
         let ways = self.search.way.iter().zip(&self.model.tangents);
         let segments = shape.directions.iter_mut().zip(&self.search.from);
         for ((direction, from), (way, tangents)) in segments.zip(ways) {
@@ -90,8 +90,8 @@ impl Solver {
         {
             return false;
         }
-        program.follow_columns(&mut self.search.way);
-        self.turn(shape);
+        program.add_columns(&mut self.search.way);
+        self.set_shape(shape);
         true
     }
 }

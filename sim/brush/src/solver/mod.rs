@@ -351,7 +351,7 @@ impl Solver {
         break_symmetry(spine, shape, settings.yields);
         let mut solution = self.minimise(problem, shape, constraints);
         for _ in 0..ROUNDS {
-            if !solution.usable(spine) || !self.follow_forces(problem, constraints) {
+            if !solution.usable(spine) || !self.update_forces(problem, constraints) {
                 break;
             }
             solution = self.minimise(problem, shape, constraints).after(&solution);
@@ -459,13 +459,13 @@ impl Solver {
     }
 
     /// Updates the normal forces of friction; true if they changed.
-    fn follow_forces(&self, problem: Problem<'_>, constraints: &mut [ContactConstraint]) -> bool {
+    fn update_forces(&self, problem: Problem<'_>, constraints: &mut [ContactConstraint]) -> bool {
         let (spine, settings) = (problem.spine, problem.settings);
         let least_n = LEAST_FORCE * spine.stiffest() / spine.length_m();
         let mut any = false;
         for (i, constraint) in constraints.iter_mut().enumerate() {
             let at = self.point.ends[constraint.joint];
-            any |= constraint.follow(self.multipliers[i], at, least_n, settings);
+            any |= constraint.update(self.multipliers[i], at, least_n, settings);
         }
         any
     }

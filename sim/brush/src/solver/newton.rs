@@ -144,7 +144,7 @@ impl Solver {
                 .map(|candidate| gaps[candidate.constraint]);
             self.program.solve(gaps);
             self.step.clone_from(&self.program.newton);
-            self.program.follow_columns(&mut self.step);
+            self.program.add_columns(&mut self.step);
             if !self.meet(spine, constraints) {
                 break;
             }
@@ -219,7 +219,7 @@ impl QuadraticProgram {
     }
 
     /// Adds the columns, weighted by the multipliers, to a step.
-    pub(super) fn follow_columns(&self, way: &mut [DVec2]) {
+    pub(super) fn add_columns(&self, way: &mut [DVec2]) {
         let columns = self.columns.chunks_exact(way.len());
         for (value, column) in self.lambda.iter().zip(columns) {
             if *value != 0.0 {

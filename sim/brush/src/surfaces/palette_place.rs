@@ -13,7 +13,7 @@ pub const GAP_M: f64 = 0.01;
 /// under it.
 const OVER_M: f64 = 0.01;
 /// Tolerance of equal poses, m and components of a quaternion.
-const SAME: f64 = 1e-9;
+const POSE_TOLERANCE: f64 = 1e-9;
 /// Radius of the board's corners on the side of the wells, and on the other, shares of its width.
 const ROUNDED: [f64; 2] = [0.14, 0.48];
 
@@ -66,7 +66,7 @@ pub fn over(canvas: &Surface, palette: &Surface) -> Pose {
 /// True if two poses differ by rounding alone.
 #[must_use]
 pub fn is_same(a: &Pose, b: &Pose) -> bool {
-    let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME);
+    let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < POSE_TOLERANCE);
     near(&a.position_m, &b.position_m) && near(&a.orientation, &b.orientation)
 }
 

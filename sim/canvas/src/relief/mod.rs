@@ -15,7 +15,7 @@ use tooth::Tooth;
 use tooth_picture::PictureTooth;
 
 /// Greatest number of tiles with cached heights.
-const KEPT: usize = 1024;
+const CACHED_TILES_MAX: usize = 1024;
 
 /// Source of the heights.
 #[derive(Debug)]
@@ -88,7 +88,7 @@ impl Relief {
             Shape::Picture(tooth) => tooth.tile(id).into(),
             Shape::Flat => vec![0.0; TILE_CELLS].into(),
         };
-        if tiles.len() >= KEPT {
+        if tiles.len() >= CACHED_TILES_MAX {
             // Whatever the direction of work over the surface, the farthest tile is not the next one.
             let ends = [tiles.first_key_value(), tiles.last_key_value()];
             let [first, last] = ends.map(|end| end.map_or(0, |(other, _)| other.y.abs_diff(id.y)));

@@ -149,7 +149,7 @@ impl Opened {
     pub fn sequencer(self) -> Result<Sequencer, EditError> {
         let mut sequencer = self.in_its_midst()?;
         sequencer.record();
-        sequencer.go_on();
+        sequencer.resume();
         Ok(sequencer)
     }
 

@@ -45,7 +45,6 @@ const SHOWN_BATCH: usize = 128;
 pub(crate) struct DocumentThread {
     shared: Arc<Shared>,
     database: Database,
-    /// The painting's file.
     path: PathBuf,
     writes: bool,
     content: Content,

@@ -34,7 +34,6 @@ pub(crate) enum Fetch {
 /// State of the document's thread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Life {
-    /// Serving.
     #[default]
     Open,
     /// Writing the data handed over before it ends.

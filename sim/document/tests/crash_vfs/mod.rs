@@ -36,7 +36,7 @@ pub(crate) enum FileKind {
 
 /// An operation of SQLite on a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Deed {
+pub(crate) enum FileOperation {
     Write {
         offset: u64,
         bytes: Vec<u8>,
@@ -53,7 +53,7 @@ pub(crate) enum Deed {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Op {
     pub(crate) file: FileKind,
-    pub(crate) deed: Deed,
+    pub(crate) operation: FileOperation,
 }
 
 /// SQLite's operations on the files of one database, in order, over any number of connections.
@@ -73,7 +73,6 @@ pub(crate) enum Refused {
     Nothing,
     /// Writes, as where the disk is full.
     Writes,
-    /// To be opened.
     Opening,
     /// Reads of the main file and its log.
     Reads,
@@ -140,14 +139,14 @@ impl Log {
 
     /// [`image`](Self::image) of a disk that does not sync when requested.
     pub(crate) fn image_of_a_liar(&self, random: &mut impl Rng, point: usize) -> Image {
-        self.image_with(random, point, |deed| *deed != Deed::Sync)
+        self.image_with(random, point, |operation| *operation != FileOperation::Sync)
     }
 
     fn image_with(
         &self,
         random: &mut impl Rng,
         point: usize,
-        is_done: impl Fn(&Deed) -> bool,
+        is_done: impl Fn(&FileOperation) -> bool,
     ) -> Image {
         let recorded = self.recorded();
         let start = recorded.start.clone();
@@ -156,16 +155,17 @@ impl Log {
                 .ops
                 .iter()
                 .take(point)
-                .filter(|op| is_done(&op.deed));
-            let ops = ops.filter(|op| op.file == kind || op.deed == Deed::SyncDirectory);
-            (content, ops.map(|op| &op.deed).collect::<Vec<_>>())
+                .filter(|op| is_done(&op.operation));
+            let ops =
+                ops.filter(|op| op.file == kind || op.operation == FileOperation::SyncDirectory);
+            (content, ops.map(|op| &op.operation).collect::<Vec<_>>())
         };
         let [main, wal, journal] = [
             file(FileKind::Main, Some(start.main)),
             file(FileKind::Wal, start.wal),
             file(FileKind::Journal, start.journal),
         ]
-        .map(|(content, deeds)| cut(random, content, &deeds));
+        .map(|(content, operations)| cut(random, content, &operations));
         Image {
             main: main.unwrap_or_default(),
             wal,
@@ -177,8 +177,8 @@ impl Log {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn note(&self, file: FileKind, deed: Deed) {
-        self.recorded().ops.push(Op { file, deed });
+    fn note(&self, file: FileKind, operation: FileOperation) {
+        self.recorded().ops.push(Op { file, operation });
     }
 }
 
@@ -211,30 +211,36 @@ impl Image {
     }
 }
 
-/// A file with `content` after `deeds` and a power cut.
-fn cut(random: &mut impl Rng, content: Option<Vec<u8>>, deeds: &[&Deed]) -> Option<Vec<u8>> {
-    let last = |deed: &Deed, deeds: &[&Deed]| deeds.iter().rposition(|other| *other == deed);
-    let synced = last(&Deed::Sync, deeds);
-    let directory = last(&Deed::SyncDirectory, deeds).unwrap_or(0);
-    let deleted = last(&Deed::Delete, &deeds[..directory]);
+/// A file with `content` after `operations` and a power cut.
+fn cut(
+    random: &mut impl Rng,
+    content: Option<Vec<u8>>,
+    operations: &[&FileOperation],
+) -> Option<Vec<u8>> {
+    let last = |operation: &FileOperation, operations: &[&FileOperation]| {
+        operations.iter().rposition(|other| *other == operation)
+    };
+    let synced = last(&FileOperation::Sync, operations);
+    let directory = last(&FileOperation::SyncDirectory, operations).unwrap_or(0);
+    let deleted = last(&FileOperation::Delete, &operations[..directory]);
     let settled = synced.max(deleted).map_or(0, |last| last + 1);
-    let (settled, since) = deeds.split_at(settled);
+    let (settled, since) = operations.split_at(settled);
     let mut content = content;
-    for deed in settled {
-        apply(&mut content, deed, |_| true);
+    for operation in settled {
+        apply(&mut content, operation, |_| true);
     }
     let bias = [0, 1, 2, 3, 4][random.next_u32() as usize % 5];
-    for deed in since {
+    for operation in since {
         let mut coin = || random.next_u32() % 4 < bias;
         let is_there = coin();
-        match deed {
-            Deed::Write { .. } if random.next_u32().is_multiple_of(4) => {
+        match operation {
+            FileOperation::Write { .. } if random.next_u32().is_multiple_of(4) => {
                 let mut coin = || random.next_u32() % 4 < bias;
-                apply(&mut content, deed, |_| coin());
+                apply(&mut content, operation, |_| coin());
             }
             // The name still refers to the old file: data in a new one are lost with it.
-            Deed::Delete if !is_there => break,
-            _ if is_there => apply(&mut content, deed, |_| true),
+            FileOperation::Delete if !is_there => break,
+            _ if is_there => apply(&mut content, operation, |_| true),
             _ => {}
         }
     }
@@ -242,9 +248,13 @@ fn cut(random: &mut impl Rng, content: Option<Vec<u8>>, deeds: &[&Deed]) -> Opti
 }
 
 /// Applies an operation to a file; of a write only the sectors selected by `sector`.
-fn apply(content: &mut Option<Vec<u8>>, deed: &Deed, mut sector: impl FnMut(usize) -> bool) {
-    match deed {
-        Deed::Write { offset, bytes } => {
+fn apply(
+    content: &mut Option<Vec<u8>>,
+    operation: &FileOperation,
+    mut sector: impl FnMut(usize) -> bool,
+) {
+    match operation {
+        FileOperation::Write { offset, bytes } => {
             let file = content.get_or_insert_default();
             let mut at = usize::try_from(*offset).expect("a test's file is small");
             let mut rest = bytes.as_slice();
@@ -260,11 +270,11 @@ fn apply(content: &mut Option<Vec<u8>>, deed: &Deed, mut sector: impl FnMut(usiz
                 rest = beyond;
             }
         }
-        Deed::Truncate(length) => {
+        FileOperation::Truncate(length) => {
             let length = usize::try_from(*length).expect("a test's file is small");
             content.get_or_insert_default().resize(length, 0);
         }
-        Deed::Sync | Deed::SyncDirectory => {}
-        Deed::Delete => *content = None,
+        FileOperation::Sync | FileOperation::SyncDirectory => {}
+        FileOperation::Delete => *content = None,
     }
 }

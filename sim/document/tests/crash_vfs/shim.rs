@@ -13,7 +13,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use rusqlite::ffi;
 
-use super::{Deed, FileKind, Log, Refused};
+use super::{FileKind, FileOperation, Log, Refused};
 
 /// The VFS's name.
 pub(super) const NAME: &CStr = c"crash";
@@ -157,15 +157,20 @@ unsafe fn inner(file: *mut ffi::sqlite3_file) -> *mut ffi::sqlite3_file {
 ///
 /// # Safety
 /// `file` was opened by [`open`].
-unsafe fn note(file: *mut ffi::sqlite3_file, code: c_int, deed: impl FnOnce() -> Deed) {
+unsafe fn note(
+    file: *mut ffi::sqlite3_file,
+    code: c_int,
+    operation: impl FnOnce() -> FileOperation,
+) {
     // SAFETY: `watched` is a box that lives until `close`.
     let watched = unsafe { (*file.cast::<CrashFile>()).watched.as_mut() };
     if let (ffi::SQLITE_OK, Some(watched)) = (code, watched) {
-        let deed = deed();
-        let syncs_directory = deed == Deed::Sync && std::mem::take(&mut watched.syncs_directory);
-        watched.log.note(watched.file, deed);
+        let operation = operation();
+        let syncs_directory =
+            operation == FileOperation::Sync && std::mem::take(&mut watched.syncs_directory);
+        watched.log.note(watched.file, operation);
         if syncs_directory {
-            watched.log.note(watched.file, Deed::SyncDirectory);
+            watched.log.note(watched.file, FileOperation::SyncDirectory);
         }
     }
 }
@@ -218,9 +223,9 @@ unsafe extern "C" fn delete(
         };
         let code = base_delete(base, name, sync_dir);
         if let (ffi::SQLITE_OK, Some(watched)) = (code, watched(name)) {
-            watched.log.note(watched.file, Deed::Delete);
+            watched.log.note(watched.file, FileOperation::Delete);
             if sync_dir != 0 {
-                watched.log.note(watched.file, Deed::SyncDirectory);
+                watched.log.note(watched.file, FileOperation::SyncDirectory);
             }
         }
         code
@@ -323,7 +328,7 @@ unsafe extern "C" fn write(
     let code = base!(file, xWrite, buffer, bytes, offset);
     // SAFETY: SQLite gives `bytes` bytes at `buffer`.
     unsafe {
-        note(file, code, || Deed::Write {
+        note(file, code, || FileOperation::Write {
             offset: offset.cast_unsigned(),
             bytes: std::slice::from_raw_parts(buffer.cast(), bytes.cast_unsigned() as usize)
                 .to_vec(),
@@ -339,7 +344,7 @@ unsafe extern "C" fn truncate(file: *mut ffi::sqlite3_file, size: ffi::sqlite3_i
     }
     let code = base!(file, xTruncate, size);
     // SAFETY: the file is open.
-    unsafe { note(file, code, || Deed::Truncate(size.cast_unsigned())) };
+    unsafe { note(file, code, || FileOperation::Truncate(size.cast_unsigned())) };
     code
 }
 
@@ -350,6 +355,6 @@ unsafe extern "C" fn sync(file: *mut ffi::sqlite3_file, flags: c_int) -> c_int {
     }
     let code = base!(file, xSync, flags);
     // SAFETY: the file is open.
-    unsafe { note(file, code, || Deed::Sync) };
+    unsafe { note(file, code, || FileOperation::Sync) };
     code
 }

@@ -28,7 +28,7 @@ impl Easel {
             sequencer: kept,
             since: 0,
         };
-        easel.hand_over();
+        easel.save_to_document();
         equip(&mut easel.sequencer);
         easel.record();
         easel
@@ -57,7 +57,7 @@ impl Easel {
         self.document.record(self.sequencer.take_records());
     }
 
-    fn hand_over(&mut self) {
+    fn save_to_document(&mut self) {
         if self.document.wants_all() {
             self.sequencer.painting_mut().tell_all_again();
             self.since = 0;
@@ -75,7 +75,7 @@ impl Easel {
     /// Hands a checkpoint over, if the last one is written.
     pub fn checkpoint(&mut self) {
         if self.document.is_ready() {
-            self.hand_over();
+            self.save_to_document();
         }
     }
 
@@ -102,7 +102,7 @@ impl Easel {
     /// Writes all as a checkpoint and closes the file; returns the fault of an unwritable one.
     pub fn try_close(mut self) -> Result<(), String> {
         self.document.flush();
-        self.hand_over();
+        self.save_to_document();
         self.document.flush();
         match self.document.fault() {
             Some((what, _)) => Err(what),

@@ -12,7 +12,6 @@ const NAME_MAX: usize = 200;
 pub(super) enum Source {
     /// Red, green or blue.
     Colour(usize),
-    /// Height.
     Height,
     /// Wet paint of a slot.
     Wet(usize),

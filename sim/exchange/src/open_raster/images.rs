@@ -19,13 +19,10 @@ const RGB: usize = 3;
 /// Content of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shows {
-    /// The bare ground.
     Ground,
     /// The newest layer of the painting up to the dry layer of this number.
     Dry(u32),
-    /// The wet paint.
     Wet,
-    /// The whole painting.
     Merged,
 }
 

@@ -5,13 +5,13 @@ use std::path::Path;
 /// A kind of picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureKind {
-    /// PNG.
+    /// Portable Network Graphics.
     Png,
-    /// JPEG.
+    /// JPEG with 8 bits.
     Jpeg,
     /// TIFF, BigTIFF too.
     Tiff,
-    /// OpenEXR.
+    /// OpenEXR, linear light.
     Exr,
     /// OpenRaster: the whole picture in it.
     Ora,

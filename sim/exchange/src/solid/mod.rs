@@ -131,7 +131,6 @@ pub(crate) trait SolidFormat {
     /// Passes over the surface, that of [`Solid::measure`] included.
     const PASSES: usize;
 
-    /// Writes the file.
     fn write(self, solid: &Solid<'_>, steps: &mut Steps<'_>) -> Result<(), ExchangeError>;
 }
 

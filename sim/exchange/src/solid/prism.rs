@@ -73,7 +73,6 @@ pub(super) trait FacetSink {
     /// True for prisms that are flat: a wall's, in a vertical plane.
     const IS_WALL: bool;
 
-    /// Adds a vertex.
     fn add_vertex(&mut self, at: Point) -> Corner;
 
     /// Adds a facet, counterclockwise from outside.

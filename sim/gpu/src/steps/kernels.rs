@@ -85,7 +85,7 @@ pub enum Groups {
     GridAndStrips,
     /// One for each strip.
     Strips,
-    /// A single workgroup.
+    /// One workgroup for the whole dispatch.
     One,
     /// The number planned by the step at this offset: none where nothing is touched.
     Planned(u64),
@@ -106,7 +106,6 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// Complete WGSL.
     fn wgsl(&self) -> String {
         SHARED.iter().chain(self.source).copied().collect()
     }

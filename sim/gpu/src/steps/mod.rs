@@ -7,18 +7,18 @@
 //! | --- | --- |
 //! | `kernels` | stages as pipelines, and those that all models share |
 //! | `record` | a step in the layout of the shaders |
-//! | `residence` | a window and a load while they are on the device |
+//! | `device_layout` | a window and a load while they are on the device |
 //! | `workspace` | the buffers; upload, steps, read-back |
 //! | `kept` | steps that are on the device alone |
 //! | `traffic` | bytes that steps move |
 //! | `probing` | a step as far as a stage |
 //! | `model` | the paint model that defers its steps to the device |
 
+pub mod device_layout;
 mod kept;
 pub mod kernels;
 pub mod model;
 pub mod probing;
 pub mod record;
-pub mod residence;
 pub mod traffic;
 pub mod workspace;

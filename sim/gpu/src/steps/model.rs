@@ -7,9 +7,9 @@ use maulstick_canvas::window::Window;
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_model::interface::{CountOwn, PaintModel, Rest, Step, StepReport, Transfer};
 
+use super::device_layout::DeviceLayout;
 use super::kept::KeptSteps;
 use super::kernels::Kernel;
-use super::residence::Residence;
 use super::traffic::Traffic;
 use super::workspace::{Batch, Workspace};
 use crate::device::{Device, GpuError};
@@ -24,7 +24,7 @@ pub trait Planner: Send {
     fn plan(
         &self,
         step: &Step<'_>,
-        on: &Residence,
+        on: &DeviceLayout,
         number: u64,
         batch: &mut Batch,
     ) -> Option<Range<usize>>;
@@ -32,7 +32,7 @@ pub trait Planner: Send {
 
 /// State that is on the device.
 struct Session {
-    on: Residence,
+    on: DeviceLayout,
     kept: KeptSteps,
     batch: Batch,
     uploaded: bool,
@@ -98,7 +98,6 @@ impl GpuModel {
         workspace.gpu.wait()
     }
 
-    /// Submits pending steps.
     fn flush(
         workspace: &mut Workspace,
         session: &mut Session,
@@ -163,7 +162,7 @@ impl PaintModel for GpuModel {
             return self.cpu.step(step);
         };
         if self.session.is_none() {
-            self.session = Residence::new(step).map(|on| Session {
+            self.session = DeviceLayout::new(step).map(|on| Session {
                 on,
                 kept: KeptSteps::of(step.head.clone()),
                 batch: Batch::default(),
@@ -237,7 +236,7 @@ impl PaintModel for GpuModel {
         self.cpu.count_own()
     }
 
-    fn take_fall(&mut self) -> Option<String> {
+    fn take_backend_change(&mut self) -> Option<String> {
         self.fall.take()
     }
 }

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use maulstick_model::interface::Step;
 
+use super::device_layout::DeviceLayout;
 use super::kernels::Kernel;
 use super::model::Planner;
-use super::residence::Residence;
 use super::workspace::{Batch, Workspace};
 use crate::device::{Device, GpuError};
 
@@ -20,7 +20,7 @@ pub struct Probing<P> {
 
 /// State of a step on the device.
 pub struct Probed {
-    on: Residence,
+    on: DeviceLayout,
     rows: Range<usize>,
 }
 
@@ -38,7 +38,7 @@ impl<P: Planner> Probing<P> {
 
     /// Runs the stages of a step up to the last one called `last`; `None` where the device cannot do the step.
     pub fn run(&mut self, step: &Step<'_>, last: &str) -> Result<Option<Probed>, GpuError> {
-        let Some(on) = Residence::new(step) else {
+        let Some(on) = DeviceLayout::new(step) else {
             return Ok(None);
         };
         let mut batch = Batch::default();

@@ -7,7 +7,7 @@ use maulstick_model::brush::head::border;
 use maulstick_model::footprint::ribbons::{middle, rank};
 use maulstick_model::interface::{Step, Sweep, Transfer};
 
-use super::residence::Residence;
+use super::device_layout::DeviceLayout;
 
 /// Margins of scores below the lowest reach and above the highest paint, cells: for ranks, and for partly covered
 /// cells.
@@ -97,7 +97,7 @@ impl StepRecord {
     pub fn new(
         step: &Step<'_>,
         sweep: &Sweep<'_>,
-        on: &Residence,
+        on: &DeviceLayout,
         (grid, number): (&Grid, usize),
     ) -> Self {
         let (traits, after) = (&step.traits, sweep.to);

@@ -3,8 +3,8 @@
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
+use super::device_layout::DeviceLayout;
 use super::kernels::{Binding, Kernel};
-use super::residence::Residence;
 
 /// Counters since the model was made.
 #[derive(Debug, Default)]
@@ -27,7 +27,7 @@ impl Traffic {
     }
 
     /// Counts a dispatch over a grid with this number of cells.
-    pub fn dispatch(&self, kernel: &Kernel, on: &Residence, cells: u64) {
+    pub fn dispatch(&self, kernel: &Kernel, on: &DeviceLayout, cells: u64) {
         let (slots, strips) = (on.slots.len() as u64, on.strips as u64);
         let words = |binding: &Binding| match binding {
             Binding::Poses => on.poses_words() as u64,

@@ -10,9 +10,9 @@ use maulstick_model::brush::load::BrushLoad;
 use maulstick_model::interface::StepReport;
 use wgpu::BufferUsages as Usage;
 
+use super::device_layout::{DeviceLayout, Settled};
 use super::kernels::{Binding, Groups, Kernel, Pipeline};
 use super::record::{RECORD_BYTES, RECORD_WORDS, StepRecord};
-use super::residence::{Residence, Settled};
 use super::traffic::Traffic;
 use crate::arena::{Arena, read};
 use crate::device::{Device, GpuError};
@@ -88,7 +88,6 @@ pub struct Workspace {
     pub gpu: Device,
     pipelines: Vec<Pipeline>,
     records: Arena,
-    /// Buffers, by binding.
     buffers: Vec<Arena>,
     back: Arena,
     /// Traffic of its steps.
@@ -133,7 +132,7 @@ impl Workspace {
     /// Uploads window and load.
     pub fn upload(
         &mut self,
-        on: &Residence,
+        on: &DeviceLayout,
         (window, load): (&Window, &BrushLoad),
         head: &Head,
     ) -> Result<(), GpuError> {
@@ -156,7 +155,7 @@ impl Workspace {
     }
 
     /// Submits a batch of steps.
-    pub fn submit(&mut self, on: &Residence, batch: &Batch) -> Result<(), GpuError> {
+    pub fn submit(&mut self, on: &DeviceLayout, batch: &Batch) -> Result<(), GpuError> {
         let gpu = self.gpu.clone();
         gpu.guarded(|| {
             let cells = batch.records.iter().map(StepRecord::cells).max();
@@ -220,7 +219,7 @@ impl Workspace {
     /// Reads back rows of the window, the load, and the statistics.
     pub fn read_back(
         &mut self,
-        on: &Residence,
+        on: &DeviceLayout,
         rows: Range<usize>,
         row: usize,
     ) -> Result<(Settled, StepReport), GpuError> {

@@ -22,7 +22,6 @@ const STILL_TICKS: std::ops::Range<usize> = 2500..TICKS;
 /// Kind of a recorded model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
-    /// A wall.
     Wall,
     /// A brush whose stiffness follows the recorded hand's pressure.
     Brush,

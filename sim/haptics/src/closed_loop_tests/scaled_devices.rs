@@ -19,7 +19,6 @@ const SCALES: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 enum Way {
     /// Divided by the scale.
     Scaled,
-    /// Unchanged.
     AsItIs,
 }
 

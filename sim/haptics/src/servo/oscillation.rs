@@ -103,7 +103,7 @@ impl Oscillation {
 /// Contact of the head with a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
-    /// The head touches.
+    /// The head touches a surface.
     Contact,
     /// The head is in the air.
     Air,

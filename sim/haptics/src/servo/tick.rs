@@ -42,7 +42,7 @@ pub struct Tick {
 /// Sender of a model, relative to the previous model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sender {
-    /// The same sender.
+    /// The sender of the previous model.
     Same,
     /// Another sender, or a restarted one: the force engages anew.
     Another,
@@ -51,8 +51,8 @@ pub enum Sender {
 /// The painter's switch of force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Switch {
-    /// Force is on.
+    /// Force is rendered.
     On,
-    /// Force is off.
+    /// The force is zero.
     Off,
 }

@@ -10,7 +10,7 @@ use crate::wavelength::{Observation, PRIOR_SD, Unknowns, Wavelength, gradient};
 /// Shares of a paint in the mixtures with the white by which it is judged.
 const TRIALS: [f64; 3] = [1.0, 0.5, 1.0 / 11.0];
 /// A standard deviation of a trial's reading, root mean square over the spectrum, that is too much.
-const TOO_MUCH: f64 = 0.02;
+const RMS_MAX: f64 = 0.02;
 
 /// The number of unknowns determined by the readings rather than the prior: the trace of the hat matrix. `None` where
 /// the equations are singular.
@@ -74,7 +74,7 @@ pub fn warnings(
     for (j, name) in measured.paints.iter().enumerate() {
         let mean = |sum: &f64| (sum / spectrum.len() as f64).sqrt();
         let rms = sums[j].iter().map(mean).fold(0.0, f64::max);
-        if rms > TOO_MUCH {
+        if rms > RMS_MAX {
             let (most, nm) = worst[j];
             let remedy = if name == white {
                 "add readings of it alone".to_owned()

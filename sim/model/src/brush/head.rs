@@ -14,7 +14,7 @@ use crate::brush::traits::BrushTraits;
 /// Strips looked at at a time.
 const LANES: usize = 8;
 /// A strip lower than this may touch, cells.
-const NEAR: f32 = 3.0;
+const CONTACT_HEIGHT_CELLS: f32 = 3.0;
 
 /// A solved pose, between two of which the head moves.
 #[derive(Clone, Debug, PartialEq)]
@@ -213,7 +213,7 @@ pub fn motion(from: &HeadPose, to: &HeadPose) -> f64 {
         ];
         let deeper = dz.min(0.0);
         let square = (dx * dx + dy * dy).max(deeper * deeper);
-        let near = from.z[i].min(to.z[i]) < NEAR;
+        let near = from.z[i].min(to.z[i]) < CONTACT_HEIGHT_CELLS;
         farthest = farthest.max(if near { square } else { 0.0 });
     }
     f64::from(farthest.sqrt())

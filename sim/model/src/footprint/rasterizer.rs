@@ -23,7 +23,7 @@ const TIP: f32 = 0.5;
 const LANES: usize = 8;
 const LANE: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 /// Larger than any cover: a product with it limits a cover only where it is not positive.
-const BEYOND: f32 = 1e6;
+const COVER_BOUND: f32 = 1e6;
 
 /// A piece of the head: each quantity at its beginning, and how much it changes to its end.
 #[derive(Clone, Copy, Debug, Default)]
@@ -363,7 +363,7 @@ impl Drawing {
                 let cover = (reach - (L::splat(y) - middle).abs() * cosine).least(most);
                 let fade = (starts[1] + starts[0] * column).least(ends[1] + ends[0] * column);
                 let cover = cover * fade.least(L::splat(1.0)).most(L::splat(0.0));
-                let inside = (L::splat(high) - column) * L::splat(BEYOND);
+                let inside = (L::splat(high) - column) * L::splat(COVER_BOUND);
                 let t = (off * inverse).most(L::splat(0.0)).least(L::splat(1.0));
                 let lowest = z + t * rise + bottom + rank;
                 self.lanes::<L>(row, x, number, cover.least(inside), lowest);

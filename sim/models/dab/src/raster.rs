@@ -81,7 +81,6 @@ struct Place<'a> {
 }
 
 impl Share<'_> {
-    /// Blends its rows.
     fn blend(&mut self, place: &Place<'_>) {
         let columns = place.under.size[0];
         self.touching.begin(columns);

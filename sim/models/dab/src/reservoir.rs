@@ -7,7 +7,7 @@ use maulstick_model::brush::load::{BrushLoad, PaintOnBrush};
 use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 
 use crate::dither::{Dither, whole};
-use crate::volume::{DEEP, UNIT};
+use crate::volume::{RESERVOIR_UNIT, UNIT};
 
 /// Quanta from a texel's reservoir to its surface, or back where negative.
 ///
@@ -59,7 +59,7 @@ impl Refill {
         let steps = f64::from(cells / traits.step_cells) / BrushTraits::FLOW_STEPS as f64;
         let kept = (1.0 - traits.refill).max(1e-9);
         Self {
-            deep: f64::from(DEEP * UNIT) / units,
+            deep: f64::from(RESERVOIR_UNIT * UNIT) / units,
             full: [traits.film_full, traits.inside_full],
             rate: 1.0 - maulstick_num::powf(kept, steps),
         }

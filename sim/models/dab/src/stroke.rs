@@ -5,11 +5,11 @@ use maulstick_model::brush::head::motion;
 use maulstick_model::interface::Sweep;
 
 /// Height below which a strip counts for the anchor point, cells.
-const NEAR: f32 = 3.0;
+const ANCHOR_HEIGHT_CELLS: f32 = 3.0;
 /// Greatest distance of a part near the surface from its place in a drawing, cells.
 pub const SLACK: f32 = 0.5;
 /// Weight of a change of height relative to one along the surface.
-pub const STEEP: f32 = 4.0;
+pub const HEIGHT_WEIGHT: f32 = 4.0;
 
 /// Stroking algorithm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,7 +136,7 @@ pub struct Course {
     pub way: [f32; 2],
     /// Bulge of its parabola: at t it is t·(t − 1) times this beside the chord, cells.
     pub bulge: [f32; 2],
-    /// Greatest deviation of a part near the surface from the anchor point's motion, cells; height counts [`STEEP`]
+    /// Greatest deviation of a part near the surface from the anchor point's motion, cells; height counts [`HEIGHT_WEIGHT`]
     /// times.
     pub sway: f32,
 }
@@ -147,7 +147,7 @@ impl Course {
     pub fn of(sweep: &Sweep<'_>, bend: Option<(&HeadPose, f32)>) -> Self {
         let (from, to) = (sweep.from, sweep.to);
         let near: Vec<usize> = (0..to.z.len().min(from.z.len()))
-            .filter(|i| to.z[*i] < NEAR)
+            .filter(|i| to.z[*i] < ANCHOR_HEIGHT_CELLS)
             .collect();
         let mean = |of: &dyn Fn(usize) -> f32| {
             near.iter().map(|i| of(*i)).sum::<f32>() / (near.len() as f32).max(1.0)
@@ -168,7 +168,7 @@ impl Course {
             };
             aside(0)
                 .max(aside(1))
-                .max(STEEP * chord(|pose| &pose.z, *i).abs())
+                .max(HEIGHT_WEIGHT * chord(|pose| &pose.z, *i).abs())
         };
         Self {
             way,

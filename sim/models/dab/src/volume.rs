@@ -8,7 +8,7 @@ pub const UNIT: f32 = 512.0;
 /// Most units of a layer: 195 µm. Any excess on a brush's surface waits there as in the reservoir.
 pub const MOST: f32 = 255.0;
 /// Units of the surface layer in one unit of the reservoir.
-pub const DEEP: f32 = 32.0;
+pub const RESERVOIR_UNIT: f32 = 32.0;
 /// Units of an opaque layer, 1/O_t of eq. 4.1: 49 µm.
 pub const OPAQUE: f32 = 64.0;
 

@@ -87,7 +87,7 @@ impl BrushFlow {
     }
 
     /// Returns the reason of the switch from the device to the processor, once.
-    pub fn take_fall(&mut self) -> Option<String> {
+    pub fn take_backend_change(&mut self) -> Option<String> {
         self.fall.take()
     }
 

@@ -13,7 +13,7 @@ use crate::layer_planes::seen_from_above;
 
 /// Thickness from which a piece over air is displayed at its height, cells: a lip as thin as the cells are wide would
 /// appear as specks.
-const THICK: f32 = 2.0;
+const LIP_THICKNESS_CELLS: f32 = 2.0;
 
 /// Counted paint whose ridges may overhang.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +32,7 @@ impl ShowPaint for Overhangs {
             let relief = bare.relief.tile(id);
             for (cell, ends) in columns {
                 if let [.., bottom, top] = ends[..]
-                    && top - bottom >= THICK * cell_m as f32
+                    && top - bottom >= LIP_THICKNESS_CELLS * cell_m as f32
                 {
                     heights[cell] = top - relief[cell];
                 }

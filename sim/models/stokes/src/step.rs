@@ -69,8 +69,8 @@ impl PaintModel for StokesPaint {
         self.flow.backend()
     }
 
-    fn take_fall(&mut self) -> Option<String> {
-        self.flow.take_fall()
+    fn take_backend_change(&mut self) -> Option<String> {
+        self.flow.take_backend_change()
     }
 
     fn take_limit(&mut self) -> Option<Decision> {

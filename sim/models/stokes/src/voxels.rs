@@ -396,7 +396,6 @@ impl Columns<'_> {
         depth
     }
 
-    /// Fills the voxels.
     fn fill(&self, slots: &[usize], (own, bottoms): (&[Own<'_>], &[usize]), volume: &mut Volume) {
         let grid = volume.grid;
         let width = grid.cells[0].max(1);

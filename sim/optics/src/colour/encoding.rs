@@ -15,7 +15,7 @@ const DIFFUSE_WHITE: f64 = 203.0;
 /// The signal of that white in hybrid log-gamma (ibid.).
 const HLG_WHITE: f64 = 0.75;
 /// Chromaticities that differ by less than this are the same: files have them in hundred thousandths, or in f32.
-const SAME: f64 = 1e-5;
+const CHROMATICITY_TOLERANCE: f64 = 1e-5;
 /// Entries of a matrix beyond this one are of primaries that span hardly anything.
 const MOST_ENTRY: f64 = 100.0;
 
@@ -179,7 +179,7 @@ impl Chromaticities {
     pub fn is_srgb(&self) -> bool {
         let all = |own: &Self| [own.primaries.as_flattened(), &own.white].concat();
         let mut pairs = all(self).into_iter().zip(all(&Self::SRGB));
-        pairs.all(|(one, other)| (one - other).abs() < SAME)
+        pairs.all(|(one, other)| (one - other).abs() < CHROMATICITY_TOLERANCE)
     }
 
     /// The matrix from linear light to that of sRGB, whose white is white (Bradford); the identity for

@@ -75,7 +75,6 @@ pub struct LampSetup {
 }
 
 impl Default for LampSetup {
-    /// Straight above.
     fn default() -> Self {
         Self {
             toward: [0.0, 0.0, 1.0],

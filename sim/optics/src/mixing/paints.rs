@@ -29,7 +29,6 @@ pub struct Paint {
 pub const THINNER: &str = "Thinner";
 
 impl Paint {
-    /// The thinner.
     fn thinner() -> Self {
         Self {
             name: THINNER.to_owned(),
@@ -76,7 +75,7 @@ fn meant(nearest: Option<&str>) -> String {
 }
 
 /// Largest K or S relative to titanium white's S: a black of which 0.02 µm hide.
-const MOST: f64 = 1e6;
+const COEFFICIENT_MAX: f64 = 1e6;
 /// The name of a paint has at most this many bytes.
 const NAME_MAX: usize = maulstick_types::limits::PAINT_NAME_MAX;
 
@@ -147,11 +146,14 @@ fn spectrum(row: Row<'_>) -> Result<Spectrum, PaintError> {
     let mut values = [0.0; SAMPLES];
     for (column, value) in (NAMED..).zip(&mut values) {
         let number = row.number(column)?;
-        if !(0.0..=MOST).contains(&number) {
+        if !(0.0..=COEFFICIENT_MAX).contains(&number) {
             let cell = shown(row.cell(column));
             return Err(PaintError::File {
                 line: row.line(),
-                what: format!("column {}: {cell} is not 0 to {MOST:.0}", column + 1),
+                what: format!(
+                    "column {}: {cell} is not 0 to {COEFFICIENT_MAX:.0}",
+                    column + 1
+                ),
             });
         }
         *value = number * WHITE_S_PER_M;

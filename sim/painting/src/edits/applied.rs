@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use maulstick_convert::{Distance, FAR};
+use maulstick_convert::{Distance, OBVIOUS_DELTA_E};
 use maulstick_types::Mixture;
 use maulstick_types::command::Detail;
 use maulstick_types::paint::StepName;
@@ -91,12 +91,12 @@ fn converted(distance: &Distance, cell_m: f64, f: &mut fmt::Formatter<'_>) -> fm
         f,
         "; {worst:.1} at most, {x:.1} mm from the left and {y:.1} mm from below, under {film_um:.0} µm of paint"
     )?;
-    if worst <= FAR {
+    if worst <= OBVIOUS_DELTA_E {
         return Ok(());
     }
     let share = 100.0 * distance.far as f64 / distance.cells.max(1) as f64;
     write!(
         f,
-        ": {why}; {share:.1} % of the paint is off by more than {FAR}"
+        ": {why}; {share:.1} % of the paint is off by more than {OBVIOUS_DELTA_E}"
     )
 }

@@ -25,7 +25,7 @@ pub use crate::ledger::Booked;
 /// Greatest size of a history, bytes, unless a painting sets another.
 pub const QUOTA: u64 = 2 << 30;
 /// The newest steps, which are never merged.
-const APART: usize = 16;
+const SEPARATE_STEPS: usize = 16;
 
 /// Steps that can be undone and redone.
 #[derive(Debug)]
@@ -284,7 +284,7 @@ impl History {
     /// Merges the two oldest neighbouring steps that can be merged; of undone ones the oldest is dropped. False where
     /// only the newest are left, which stay separate.
     pub(crate) fn merge_oldest(&mut self) -> bool {
-        let mergeable = self.steps.len().saturating_sub(APART);
+        let mergeable = self.steps.len().saturating_sub(SEPARATE_STEPS);
         let ids: Vec<u64> = self.steps.keys().take(mergeable + 1).copied().collect();
         let parts = |one: u64, other: u64| one <= self.part && self.part < other;
         let pair = ids.windows(2).find(|pair| !parts(pair[0], pair[1]));

@@ -63,7 +63,7 @@ impl Accounts {
     }
 
     /// Repeats the bookings of a step with `times` 1, or reverses them with −1.
-    pub(crate) fn turn(&mut self, booked: &Booked, times: i64) {
+    pub(crate) fn book(&mut self, booked: &Booked, times: i64) {
         self.ledger.book(booked, times);
         self.accounted = self.ledger.clone();
     }

@@ -40,7 +40,7 @@ impl RecordState {
 
     /// Handles a step that was undone or redone. A step from before the beginning does not exist in a replay, nor does
     /// one that was merged because of the quota.
-    pub(crate) fn turn(&mut self, step: &Step) {
+    pub(crate) fn move_to(&mut self, step: &Step) {
         self.is_broken |= step.operations > 1 && self.beginning.is_some();
         self.go_to(step.id);
     }

@@ -135,7 +135,7 @@ impl Sequencer {
 
     /// Resumes after the program ended: the next states of brushes begin new paths, and no take has a brush until its
     /// player is there again.
-    pub fn go_on(&mut self) {
+    pub fn resume(&mut self) {
         self.let_go();
         self.decide(Decision::Resumed);
     }
@@ -229,11 +229,11 @@ impl Sequencer {
     }
 
     /// Journals a change of the paint's backend, or a limit that it has met.
-    pub(super) fn tell_fall(&mut self) {
+    pub(super) fn publish_backend_change(&mut self) {
         if let Some(limit) = self.painting.take_limit() {
             self.decide(limit);
         }
-        if let Some(why) = self.painting.take_fall() {
+        if let Some(why) = self.painting.take_backend_change() {
             let name = self.painting.backend();
             self.decide(Decision::Fallback { name, why });
         }

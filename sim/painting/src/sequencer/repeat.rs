@@ -75,7 +75,7 @@ impl Sequencer {
             }
             Accepted::Entry(Entry::Decision { what }) => {
                 if what == Decision::Resumed {
-                    self.go_on();
+                    self.resume();
                 }
                 Ok(())
             }
@@ -87,7 +87,7 @@ impl Sequencer {
     /// Live hands paint again; their brushes restart.
     pub fn end_repeating(&mut self) {
         if std::mem::take(&mut self.repeats) {
-            self.go_on();
+            self.resume();
         }
     }
 }

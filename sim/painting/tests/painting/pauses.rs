@@ -27,7 +27,6 @@ const SCAR: f64 = 0.05;
 /// The device after a pause.
 #[derive(Clone, Copy, PartialEq)]
 enum After {
-    /// The same.
     Same,
     /// Another one, for which the brush lands again.
     Another,
@@ -40,7 +39,6 @@ enum Hand {
     Rests,
 }
 
-/// A painted stroke.
 struct Stroke {
     /// Film of each cell, row after row, µm.
     cells: Vec<f64>,

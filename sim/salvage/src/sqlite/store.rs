@@ -10,7 +10,7 @@ use super::wal::{Frames, Header, WalState};
 /// Copy of a page that a row was read from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Origin {
-    /// The main file.
+    /// The database itself, not its journal.
     Main,
     /// A committed frame of the WAL, without damage before it.
     Wal,

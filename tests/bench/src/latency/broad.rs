@@ -33,7 +33,6 @@ const RATE_HZ: u64 = 250;
 const SPEED_M_PER_S: f64 = 0.5;
 /// Length of a stroke, m.
 const STROKE_M: f64 = 0.2;
-/// Number of strokes.
 const STROKES: u64 = 24;
 /// Samples between two strokes, of a pen that hovers.
 const LIFT_SAMPLES: u64 = 50;

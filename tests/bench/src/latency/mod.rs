@@ -171,7 +171,7 @@ impl<'a> Puller<'a> {
             let now_ns = self.bus.now_ns();
             newest = (reply.version, reply.epoch, reply.look);
             self.latencies.frames += usize::from(!reply.tiles.is_empty());
-            self.take_in();
+            self.drain_inputs();
             let Some(held) = reply.holds.first() else {
                 continue;
             };
@@ -188,7 +188,7 @@ impl<'a> Puller<'a> {
     }
 
     /// Drains the states, and records their solves.
-    fn take_in(&mut self) {
+    fn drain_inputs(&mut self) {
         while let Some(state) = self.states.try_recv() {
             let solves = state.message.solves.iter().filter(|solve| solve.stroke > 0);
             for solve in solves {

@@ -88,7 +88,7 @@ fn watch(bus: &ZenohBus, seconds: f64, rig: &mut Running) -> Result<Seen, UserEr
             }
         }
         while let Some(frame) = frames.try_recv() {
-            seen.take_in(frame.header.event_ns, &frame.message);
+            seen.record(frame.header.event_ns, &frame.message);
         }
         let ends = std::iter::from_fn(|| takes.try_recv()).any(|take| take.message.end.is_some());
         if ends && !is_over {
@@ -107,7 +107,7 @@ fn watch(bus: &ZenohBus, seconds: f64, rig: &mut Running) -> Result<Seen, UserEr
 }
 
 impl Seen {
-    fn take_in(&mut self, completed_ns: u64, frame: &Presented) {
+    fn record(&mut self, completed_ns: u64, frame: &Presented) {
         self.frames.push(completed_ns);
         self.draw_ms.push(frame.draw_ns as f64 * 1e-6);
         let Some(held) = frame.holds.first() else {

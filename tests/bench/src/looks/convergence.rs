@@ -23,7 +23,6 @@ pub(super) const MOST_POWER: f64 = 2.0;
 /// Canvas, and the heights of its strokes, mm.
 const SIZE_MM: [f64; 2] = [80.0, 100.0];
 const HEIGHTS_MM: [f64; 4] = [14.0, 38.0, 62.0, 86.0];
-/// Load.
 const PAINT: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
 
 /// Paint of strokes on cells of one size.

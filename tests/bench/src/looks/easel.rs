@@ -15,7 +15,6 @@ use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 use maulstick_types::values::BrushName;
 
-/// Sample rate, Hz.
 const RATE_HZ: f64 = 250.0;
 /// Speed of the hand, mm/s.
 const SPEED: f64 = 100.0;

@@ -10,11 +10,8 @@ use maulstick_rig::UserError;
 use super::mixtures::held_out;
 use crate::report::{Report, quantile, sorted};
 
-/// Number of mixtures.
 const COUNT: usize = 5000;
-/// Standard observer.
 const OBSERVER: Observer = Observer::Cie1931;
-/// Lights.
 const LIGHTS: [&str; 4] = ["D65", "D50", "A", "FL11"];
 /// Fits of which the median time is reported.
 const FITS: usize = 7;

@@ -75,7 +75,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let is_ready = AtomicBool::new(false);
     let (sent, arrived) = std::thread::scope(|scope| {
         let feeding = scope.spawn(|| feed(&mut seams, &is_ready));
-        let arrived = hear(&bus, &is_ready, || feeding.is_finished());
+        let arrived = receive(&bus, &is_ready, || feeding.is_finished());
         (feeding.join(), arrived)
     });
     let (sent, arrived) = (sent.map_err(|_| fault("the pens' thread fell"))??, arrived?);
@@ -197,7 +197,7 @@ fn feed(seams: &mut Seams, is_ready: &AtomicBool) -> Result<[Vec<u64>; 2], UserE
 }
 
 /// Receives the samples like the brush node until `is_over`; returns the time of each first arrival, ns.
-fn hear(
+fn receive(
     bus: &ZenohBus,
     is_ready: &AtomicBool,
     is_over: impl Fn() -> bool,

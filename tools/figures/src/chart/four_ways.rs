@@ -15,7 +15,7 @@ const GAP: usize = 12;
 const MARGIN: usize = 20;
 /// Heights of words, pixels.
 const TITLE: f32 = 22.0;
-const SMALL: f32 = 16.0;
+const SMALL_TEXT_PX: f32 = 16.0;
 
 /// Shares of the second paint, and their labels: 0, 1:64 by doublings to 64:1, 1.
 pub(crate) fn shares() -> Vec<(f64, String)> {
@@ -71,9 +71,11 @@ pub(crate) fn picture(
             [title(grading.way, rule), off]
         })
         .collect();
-    let widths = lines
-        .iter()
-        .map(|[title, off]| measure.length(title, TITLE).max(measure.length(off, SMALL)));
+    let widths = lines.iter().map(|[title, off]| {
+        measure
+            .length(title, TITLE)
+            .max(measure.length(off, SMALL_TEXT_PX))
+    });
     let left = 2 * MARGIN + widths.max().unwrap_or(0);
     let top = MARGIN + 52;
     let across = shares.len() * PATCH[0];
@@ -90,13 +92,13 @@ pub(crate) fn picture(
         TITLE,
     );
     for (i, (_, words)) in shares.iter().enumerate() {
-        let inset = PATCH[0].saturating_sub(page.length(words, SMALL)) / 2;
-        page.write(words, [left + i * PATCH[0] + inset, top - 8], SMALL);
+        let inset = PATCH[0].saturating_sub(page.length(words, SMALL_TEXT_PX)) / 2;
+        page.write(words, [left + i * PATCH[0] + inset, top - 8], SMALL_TEXT_PX);
     }
     for (row, (grading, [title, off])) in gradings.iter().zip(&lines).enumerate() {
         let y = top + row * (PATCH[1] + GAP);
         page.write(title, [MARGIN, y + 30], TITLE);
-        page.write(off, [MARGIN, y + 52], SMALL);
+        page.write(off, [MARGIN, y + 52], SMALL_TEXT_PX);
         for (i, seen) in grading.seen.iter().enumerate() {
             page.fill([left + i * PATCH[0], y], PATCH, seen.bytes());
         }

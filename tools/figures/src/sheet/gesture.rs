@@ -6,7 +6,6 @@ use maulstick_canvas::EditError;
 use maulstick_session::Offline;
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 
-/// Sample rate, Hz.
 const RATE_HZ: f64 = 250.0;
 /// Pause between two gestures, s: longer than the gap within a stroke.
 const PAUSE_S: f64 = 0.3;

@@ -79,7 +79,6 @@ const GROUPS: [(&str, &[Action]); 4] = [
 /// Distance from the window's edges, points.
 const MARGIN: f32 = 6.0;
 
-/// Its area.
 #[must_use]
 pub(crate) fn id() -> Id {
     Id::unique("bar")

@@ -14,7 +14,6 @@ use crate::widgets::context::PanelContext;
 /// Width of the scroll bar at the right, points.
 const BAR: f32 = 14.0;
 
-/// The column.
 pub(super) struct Column {
     panels: Vec<Box<dyn Panel>>,
     /// True if it is to get the keyboard.
@@ -36,7 +35,6 @@ impl Column {
         self.is_wanted = true;
     }
 
-    /// Shows it.
     pub(super) fn show(&mut self, context: &Context, work: &mut PanelContext<'_>) {
         let side = column_side(work.preferences);
         let (corner, _, inward) = side.anchors();

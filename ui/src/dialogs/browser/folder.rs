@@ -15,7 +15,6 @@ const MOST: usize = 5_000;
 /// A file or folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Entry {
-    /// Its name.
     pub name: String,
     /// True for a folder.
     pub is_folder: bool,

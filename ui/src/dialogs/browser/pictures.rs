@@ -28,7 +28,6 @@ enum Known {
     Coming,
     /// The file has none.
     Missing,
-    /// It is loaded.
     Here(TextureHandle),
 }
 

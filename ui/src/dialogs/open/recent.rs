@@ -17,7 +17,6 @@ const MOST: usize = 4;
 /// A painting that was open before.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Recent {
-    /// Its file.
     pub path: PathBuf,
     /// Time since it was last changed, in words; `None` if the file is gone.
     pub age: Option<String>,

@@ -36,7 +36,6 @@ use crate::widgets::context::PanelContext;
 /// The portrait of the brush in the hand, points.
 const PORTRAIT: [f32; 2] = [44.0, 64.0];
 
-/// The panel.
 #[derive(Debug, Default)]
 pub(crate) struct BrushPanel {
     /// The brush while a control is dragged, before it is requested.

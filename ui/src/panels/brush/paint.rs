@@ -14,7 +14,6 @@ use crate::widgets::context::PanelContext;
 /// Names that are proposed at most.
 const PROPOSED: usize = 4;
 
-/// The rows.
 #[derive(Debug, Default)]
 pub(super) struct PaintRows {
     fault: Option<UserError>,

@@ -8,7 +8,6 @@ use super::entry;
 use crate::settings::presets::{Preset, check_name};
 use crate::widgets::context::PanelContext;
 
-/// The rows.
 #[derive(Debug, Default)]
 pub(super) struct PresetRows {
     /// The name of a new one.

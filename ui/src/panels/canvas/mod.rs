@@ -71,7 +71,6 @@ const ZOOM: Number<'_> = Number {
 /// Name of a flip among the steps of the history.
 const _: &str = tr_noop!("flip");
 
-/// The panel.
 #[derive(Debug, Default)]
 pub(crate) struct CanvasPanel {
     sliders: Sliders,

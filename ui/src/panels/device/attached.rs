@@ -10,7 +10,6 @@ use maulstick_ui_kit::rows::note;
 use crate::rig::device_order::SetupChange;
 use crate::widgets::context::PanelContext;
 
-/// Shows it.
 pub(super) fn show(ui: &mut Ui, work: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(tr!("Attached")).strong());

@@ -47,7 +47,6 @@ const PRESENT_NS: u64 = 3_000_000_000;
 /// A changed strength is shown for this long until the device has it, ns.
 const PATIENCE_NS: u64 = 700_000_000;
 
-/// The panel.
 #[derive(Debug, Default)]
 pub(crate) struct DevicePanel {
     /// The device of which a share is being changed, the requested percentage, and the time until which it is shown, ns.
@@ -330,7 +329,6 @@ fn moves(info: &StylusInfo, brushes: usize) -> String {
     }
 }
 
-/// Driver and rate.
 fn driven(info: &StylusInfo) -> String {
     let driver = &info.driver;
     if info.rate_hz >= 1.0 {

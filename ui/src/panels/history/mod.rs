@@ -31,7 +31,6 @@ const PICTURE: [f32; 2] = [60.0, 48.0];
 const INWARD: f32 = 12.0;
 const MOST_INWARD: usize = 5;
 
-/// The panel.
 #[derive(Default)]
 pub(crate) struct HistoryPanel {
     /// Name of the next version.

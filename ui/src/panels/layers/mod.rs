@@ -37,7 +37,6 @@ const OPACITY: Number<'_> = Number {
     factors: false,
 };
 
-/// The panel.
 #[derive(Debug, Default)]
 pub(crate) struct LayersPanel {
     sliders: Sliders,

@@ -78,7 +78,6 @@ const WAVELENGTHS: Number<'_> = Number {
     factors: false,
 };
 
-/// The panel.
 #[derive(Default)]
 pub(crate) struct LightPanel {
     asked: Pending<Light>,

@@ -7,7 +7,6 @@ use crate::settings::paint_sets::PaintSet;
 use crate::settings::presets::check_name;
 use crate::widgets::context::PanelContext;
 
-/// The rows.
 #[derive(Debug, Default)]
 pub(super) struct SetRows {
     name: String,

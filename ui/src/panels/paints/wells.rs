@@ -20,7 +20,6 @@ const PROPOSED: usize = 4;
 /// Width and height of a button with a sign, points.
 const SIGN: f32 = 20.0;
 
-/// The rows.
 #[derive(Debug, Default)]
 pub(super) struct WellRows {
     /// The well that the next paint goes into.

@@ -21,9 +21,7 @@ const SEAM_WIDTH: f64 = 0.035;
 /// Linear colours of what a brush is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Finish {
-    /// The ferrule.
     pub nickel: Vec3,
-    /// The handle.
     pub lacquer: Vec3,
 }
 

@@ -18,7 +18,6 @@ pub(super) enum Stage {
     Device,
     /// It solves a brush.
     Brush,
-    /// It paints.
     Paint,
     /// It shows, records or supervises.
     Viewer,

@@ -137,7 +137,6 @@ fn switched_off_there_is_no_force_at_once_and_switched_on_it_comes_up() {
 /// Name and action of an event that makes force engage anew.
 type Beginning = (&'static str, fn(&mut Servo));
 
-/// The events.
 const BEGINNINGS: [Beginning; 5] = [
     ("a start", |servo| *servo = Servo::new(servo.limits)),
     ("another sender", |servo| {

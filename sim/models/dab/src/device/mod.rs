@@ -25,9 +25,9 @@ use crate::{Dab, first_blend};
 use maulstick_model::interface::Step;
 
 use drawing::{drawings, grid};
+use maulstick_gpu::steps::device_layout::DeviceLayout;
 use maulstick_gpu::steps::model::{GpuModel, Planner};
 use maulstick_gpu::steps::record::StepRecord;
-use maulstick_gpu::steps::residence::Residence;
 use maulstick_gpu::steps::workspace::{Batch, Call};
 use maulstick_gpu::{Choice, Device, GpuError, OnDevice};
 use record::BlendRecord;
@@ -66,7 +66,7 @@ impl Planner for Steps {
     fn plan(
         &self,
         step: &Step<'_>,
-        on: &Residence,
+        on: &DeviceLayout,
         number: u64,
         batch: &mut Batch,
     ) -> Option<Range<usize>> {

@@ -11,7 +11,7 @@ use crate::device;
 use crate::scene::Scene;
 
 /// Tolerance of positions and scores: roundings of a place below 128 cells, and of scores to 2⁻¹⁸ of their range.
-const NEAR: f32 = 2e-4;
+const PLACE_TOLERANCE: f32 = 2e-4;
 
 /// The processor's drawing of the head in the middle of a step, on the grid of the step's bounds, with all paint raised
 /// by `higher` cells.
@@ -28,7 +28,7 @@ fn drawn(step: &mut Step<'_>, higher: f32) -> Drawn {
 
 /// Number of cells of a probe's grid with another part of the head over them, and number with any.
 fn apart(drawn: &Drawn, probe: &Probe, travel: impl Fn(&Over) -> f32) -> (usize, usize) {
-    let near = |a: f32, b: f32| (a - b).abs() <= NEAR;
+    let near = |a: f32, b: f32| (a - b).abs() <= PLACE_TOLERANCE;
     let alike = probe.over.iter().filter(|over| {
         // The device's grid is a part of this one.
         let [x, y] = [0, 1].map(|i| over.at[i] + (probe.origin[i] - drawn.origin[i]) as usize);
@@ -99,7 +99,7 @@ fn the_head_is_over_the_same_cells() {
         });
         assert_eq!(shares.count(), 0, "scene {seed}");
         let raise = |over: &Over| Over {
-            clearance: over.clearance + 2.0 * NEAR,
+            clearance: over.clearance + 2.0 * PLACE_TOLERANCE,
             ..*over
         };
         let mut raised = probe.clone();

@@ -14,7 +14,7 @@ use crate::device;
 use crate::scene::{PAINTS, Scene, lying};
 
 /// Tolerated share of differing counts, where the rounding of a sum decides about a unit.
-const FEW: f64 = 2e-4;
+const DIFFERING_SHARE_MAX: f64 = 2e-4;
 
 /// The device's drawing in the processor's form, for a fixed footprint, whose strips do not move.
 fn as_drawn(probe: &Probe) -> Drawn {
@@ -147,7 +147,10 @@ fn paint_goes_both_ways_in_whole_units() {
         println!(
             "{name}: {off} of {all} counts differ, {changed} changed, by other thresholds {faulty}"
         );
-        assert!(off as f64 <= FEW * all as f64, "{name}: {off} of {all}");
+        assert!(
+            off as f64 <= DIFFERING_SHARE_MAX * all as f64,
+            "{name}: {off} of {all}"
+        );
         assert!(
             changed > 2000 && faulty > 20 * off.max(5),
             "{name}: {faulty}, a fault passes"

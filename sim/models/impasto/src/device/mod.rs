@@ -18,9 +18,9 @@ use std::ops::Range;
 use crate::Impasto;
 use maulstick_model::interface::Step;
 
+use maulstick_gpu::steps::device_layout::DeviceLayout;
 use maulstick_gpu::steps::model::{GpuModel, Planner};
 use maulstick_gpu::steps::record::{Grid, StepRecord};
-use maulstick_gpu::steps::residence::Residence;
 use maulstick_gpu::steps::workspace::{Batch, Call};
 use maulstick_gpu::{Choice, Device, GpuError, OnDevice};
 use stages::{KERNELS, PUSHES};
@@ -44,7 +44,7 @@ impl Planner for Steps {
     fn plan(
         &self,
         step: &Step<'_>,
-        on: &Residence,
+        on: &DeviceLayout,
         _number: u64,
         batch: &mut Batch,
     ) -> Option<Range<usize>> {

@@ -18,7 +18,7 @@ use maulstick_model::footprint::shares_of;
 /// Default stain: paint that stays on a cell however hard it is brushed, quanta, 3 µm (§ 6.4.1, size).
 pub const STAIN: f32 = 2013.0;
 /// Capacity kept free on a cell, quanta: more than the truncation error.
-const SPARE: f32 = 64.0;
+const SPARE_QUANTA: f32 = 64.0;
 /// Share of a cell's capacity up to which all inflow fits.
 const HALF_EMPTY: f32 = 0.1;
 
@@ -71,7 +71,6 @@ pub enum Axis {
 }
 
 wide! {
-    /// Moves these paints.
     fn move_planes(mover: &mut Mover, flux: &Flux<'_>, planes: &mut [&mut Vec<f32>]) {
         // A loop, as a closure would not be compiled for wide registers.
         for plane in planes {
@@ -168,7 +167,7 @@ impl Advection {
             }
         }
         for (room, total) in self.room.iter_mut().zip(&self.totals) {
-            let free = (CELL_MAX as f32 - SPARE - total).max(0.0);
+            let free = (CELL_MAX as f32 - SPARE_QUANTA - total).max(0.0);
             *room = if *room > free { free / *room } else { 1.0 };
         }
     }

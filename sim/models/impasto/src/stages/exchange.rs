@@ -25,7 +25,6 @@ pub struct Exchange {
     /// Contacts distributed to the cores; shares beyond `used` are left from other steps.
     shares: Vec<Share>,
     used: usize,
-    /// Texels that touch.
     texels: Vec<u32>,
     /// Index of each texel of the brush in `texels`; [`ABSENT`] unless it touches.
     place_of: Vec<u32>,

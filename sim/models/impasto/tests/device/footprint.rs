@@ -9,12 +9,12 @@ use crate::device;
 use crate::scene::Scene;
 
 /// Tolerance of positions and scores: roundings of a place below 128 cells, and of scores to 2⁻¹⁸ of their range.
-const NEAR: f32 = 2e-4;
+const PLACE_TOLERANCE: f32 = 2e-4;
 
 /// Number of cells touched by either with a different contact.
 fn apart(one: &[Contact], two: &[Contact]) -> (usize, usize) {
     let same = |a: &Contact, b: &Contact| {
-        let near = |a: f32, b: f32| (a - b).abs() <= NEAR;
+        let near = |a: f32, b: f32| (a - b).abs() <= PLACE_TOLERANCE;
         a.cell == b.cell
             && a.texel == b.texel
             && near(a.cover, b.cover)
@@ -55,7 +55,7 @@ fn the_same_cells_are_touched() {
         let mut faulty = probe.contacts.clone();
         faulty
             .iter_mut()
-            .for_each(|contact| contact.depth += 2.0 * NEAR);
+            .for_each(|contact| contact.depth += 2.0 * PLACE_TOLERANCE);
         let (off, _) = apart(&footprint.contacts, &faulty);
         assert!(off * few > all, "a fault passes");
     }

@@ -10,7 +10,7 @@ use maulstick_model::footprint::contact::Contact;
 use crate::scene::{PAINTS, Random, Scene};
 
 /// Tolerance of velocities: a few operations on numbers of at most some cells.
-pub(crate) const SLOW: f64 = 4e-6;
+pub(crate) const VELOCITY_TOLERANCE: f64 = 4e-6;
 
 /// A scene after `steps` steps of its brush; some are nearly full, and some have all their strips on few texels.
 pub(crate) fn scene(seed: u64, steps: u64) -> Scene {

@@ -9,7 +9,7 @@ use maulstick_impasto::stages::velocity::{EASE, SQUISH, STABLE};
 use maulstick_model::transfer::{Exchanging, SWAP_FILM};
 
 use crate::device;
-use crate::probed::{Grid, SLOW, ahead, run, scene};
+use crate::probed::{Grid, VELOCITY_TOLERANCE, ahead, run, scene};
 use crate::scene::{CELL_M, Scene, lying};
 
 /// Tolerance in quanta: each face's count is truncated, and f32 may round it over a whole number.
@@ -90,7 +90,7 @@ fn paint_follows_the_brush_and_goes_out_of_its_way() {
             }
         }
         println!("scene {seed}: velocities off by {worst:.2e}");
-        assert!(worst <= SLOW, "scene {seed}: {worst}");
+        assert!(worst <= VELOCITY_TOLERANCE, "scene {seed}: {worst}");
     }
     assert!(moving > 4000, "{moving}");
 }

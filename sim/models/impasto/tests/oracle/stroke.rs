@@ -41,7 +41,6 @@ struct Bench {
 /// Extent of a window.
 #[derive(Clone, Copy, PartialEq)]
 enum Windows {
-    /// The whole surface.
     Whole,
     /// The tiles that a step needs, with those that carry its bristles.
     Narrow,

@@ -24,7 +24,7 @@ pub enum Ends {
 }
 
 /// Number of layers beyond the cells of an axis.
-const BEYOND: usize = 3;
+const MARGIN_LAYERS: usize = 3;
 
 /// Cells of a window and its sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,15 +48,15 @@ impl Grid {
     pub const fn stride(&self, axis: usize) -> usize {
         match axis {
             0 => 1,
-            1 => self.cells[0] + BEYOND,
-            _ => (self.cells[0] + BEYOND) * (self.cells[1] + BEYOND),
+            1 => self.cells[0] + MARGIN_LAYERS,
+            _ => (self.cells[0] + MARGIN_LAYERS) * (self.cells[1] + MARGIN_LAYERS),
         }
     }
 
     /// Length of a field.
     #[must_use]
     pub const fn len(&self) -> usize {
-        self.stride(2) * (self.cells[2] + BEYOND)
+        self.stride(2) * (self.cells[2] + MARGIN_LAYERS)
     }
 
     /// True if it has no cells.
@@ -212,8 +212,8 @@ impl Grid {
     /// Calls for each index of the lowest layer across an axis.
     fn layer(&self, axis: usize, mut each: impl FnMut(usize)) {
         let [a, b] = others(axis);
-        for i in 0..self.cells[b] + BEYOND {
-            for j in 0..self.cells[a] + BEYOND {
+        for i in 0..self.cells[b] + MARGIN_LAYERS {
+            for j in 0..self.cells[a] + MARGIN_LAYERS {
                 each(i * self.stride(b) + j * self.stride(a));
             }
         }

@@ -138,7 +138,7 @@ impl<'a> Schedule<'a> {
             let some = (steps - done).min(self.plan.memory);
             for number in 0..some {
                 self.precondition(number, r);
-                self.turn(number, done + number);
+                self.add_direction(number, done + number);
             }
             done += some;
             self.end_directions(some, done);
@@ -174,7 +174,7 @@ impl<'a> Schedule<'a> {
     }
 
     /// Adds a direction, the `done`th of the step.
-    fn turn(&mut self, number: usize, done: usize) {
+    fn add_direction(&mut self, number: usize, done: usize) {
         let before = number as u64;
         let call = Call {
             number: number as u32,

@@ -77,12 +77,12 @@ impl Painting {
     /// A sixtieth of a second goes by.
     pub fn tick(&mut self) {
         for (surface, round) in self.clock.tick(self.brushes.in_contact()) {
-            self.go_on_drying(surface, round);
+            self.resume_drying(surface, round);
         }
     }
 
     /// Dries the next tiles of a round.
-    fn go_on_drying(&mut self, surface: u32, mut round: Round) {
+    fn resume_drying(&mut self, surface: u32, mut round: Round) {
         let mut dryings = self.clock.dryings.iter();
         let Some(place) = dryings.position(|it| it.surface == surface) else {
             return;

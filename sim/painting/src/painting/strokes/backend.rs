@@ -93,7 +93,7 @@ impl Painting {
     }
 
     /// The reason why its backend changed, returned once, after the stroke in which it changed.
-    pub fn take_fall(&mut self) -> Option<String> {
+    pub fn take_backend_change(&mut self) -> Option<String> {
         self.backend.facts.fall.take()
     }
 
@@ -118,7 +118,7 @@ impl Painting {
             self.book(Some(brush));
         }
         let Backend { models, facts, .. } = &mut self.backend;
-        facts.fall.find(models.take_fall());
+        facts.fall.find(models.take_backend_change());
         facts.limit.find(models.take_limit());
     }
 
@@ -138,7 +138,6 @@ impl Painting {
 /// Time at which the model moves the paint of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Timing {
-    /// During the step.
     Now,
     /// When it is settled.
     Deferred,

@@ -172,7 +172,7 @@ impl Painting {
         let effects = &step.effects;
         // A drying would undo this.
         self.clock.stop(None);
-        self.record.turn(step);
+        self.record.move_to(step);
         for (place, change) in &*step.tiles {
             self.surfaces.put(*place, change.end(to).clone());
         }
@@ -181,7 +181,7 @@ impl Painting {
                 brush.carry(&pages[to]);
             }
         }
-        self.accounts.turn(&effects.booked, way.times());
+        self.accounts.book(&effects.booked, way.times());
         let (layers, made) = (effects.layers.as_ref(), effects.materials.as_ref());
         self.turn_non_tile_state(layers.map(|ends| &ends[to]), made.map(|ends| &ends[to]));
         self.turn_tops(step, way);

@@ -33,7 +33,6 @@ struct Level {
     b: Vec<f32>,
     /// Scratch field, 0 where there are no unknowns.
     spare: Vec<f32>,
-    /// Layers with unknowns.
     layers: Layers,
     /// Transfer of this level to the next; `None` on the coarsest.
     down: Option<Down>,
@@ -211,8 +210,7 @@ wide! {
     }
 }
 
-/// Inverses of the roots of the Chebyshev polynomial on [1/50, 2], large and small in turn so that rounding stays
-/// small.
+/// Inverses of the roots of the Chebyshev polynomial on [1/50, 2], large and small in turn to keep rounding small.
 fn coarsest_omegas() -> [f32; COARSEST_STEPS] {
     let (low, high) = (0.02, 2.0);
     let mut order = [0; COARSEST_STEPS];

@@ -16,7 +16,6 @@ use crate::grid::{Ends, Grid};
 pub(crate) enum Along {
     /// In the middle of cells.
     Middles,
-    /// On faces.
     Faces,
 }
 

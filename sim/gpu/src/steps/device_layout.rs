@@ -16,7 +16,7 @@ const MOST_BITS: u32 = 17;
 
 /// Shader-visible layout of a window and a brush load.
 #[derive(Clone, Debug)]
-pub struct Residence {
+pub struct DeviceLayout {
     /// Slots of the paints, in order of plane.
     pub slots: Vec<usize>,
     /// Number of cells of the window.
@@ -45,12 +45,12 @@ pub struct Settled {
     pub top: f32,
 }
 
-impl Residence {
+impl DeviceLayout {
     /// Layout of a step's window and load; `None` where they are too large for the device.
     pub fn new(step: &Step<'_>) -> Option<Self> {
         let head = step.head;
         let in_use = |slot: &usize| step.window.has(*slot) || step.load.has(*slot);
-        let residence = Self {
+        let layout = Self {
             slots: (0..SLOTS).filter(in_use).collect(),
             cells: step.window.width() * step.window.height(),
             texels: step.load.texels(),
@@ -59,10 +59,10 @@ impl Residence {
             vertices: head.skin().map_or(0, |skin| skin.places().len()),
             steps: step.load.steps(),
         };
-        let fits = residence.has_room(residence.cells as u64)
-            && 4 * residence.load_words() <= MOST_BYTES
-            && residence.segment_bits() <= MOST_BITS;
-        fits.then_some(residence)
+        let fits = layout.has_room(layout.cells as u64)
+            && 4 * layout.load_words() <= MOST_BYTES
+            && layout.segment_bits() <= MOST_BITS;
+        fits.then_some(layout)
     }
 
     /// True if a grid with this number of cells fits.
