@@ -14,7 +14,7 @@ use crate::device;
 use crate::scene::{PAINTS, Scene, lying};
 
 /// Tolerated share of differing counts, where the rounding of a sum decides about a unit.
-const DIFFERING_SHARE_MAX: f64 = 2e-4;
+const SHARE_MAX: f64 = 2e-4;
 
 /// The device's drawing in the processor's form, for a fixed footprint, whose strips do not move.
 fn as_drawn(probe: &Probe) -> Drawn {
@@ -148,7 +148,7 @@ fn paint_goes_both_ways_in_whole_units() {
             "{name}: {off} of {all} counts differ, {changed} changed, by other thresholds {faulty}"
         );
         assert!(
-            off as f64 <= DIFFERING_SHARE_MAX * all as f64,
+            off as f64 <= SHARE_MAX * all as f64,
             "{name}: {off} of {all}"
         );
         assert!(
