@@ -1,5 +1,4 @@
-//! Touching and transfer on the device's drawing of the head: distribution, blending and return of films agree with the
-//! processor's.
+//! Touching and transfer, on the head as the device drew it: films are parted, blended and given back as on the processor.
 
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_dab::device::probe::{Probe, Prober};
@@ -13,10 +12,10 @@ use maulstick_model::interface::{Handling, Step, Sweep, Transfer};
 use crate::device;
 use crate::scene::{PAINTS, Scene, lying};
 
-/// Tolerated share of differing counts, where the rounding of a sum decides about a unit.
-const SHARE_MAX: f64 = 2e-4;
+/// Share of the counts that may differ: where a sum that rounds otherwise decides whether a unit goes.
+const FEW: f64 = 2e-4;
 
-/// The device's drawing in the processor's form, for a fixed footprint, whose strips do not move.
+/// The device's drawing as the processor's; of the fixed footprint, whose strips do not move.
 fn as_drawn(probe: &Probe) -> Drawn {
     let stride = probe.size[0].next_multiple_of(16);
     let cells = stride * probe.size[1];
@@ -45,7 +44,7 @@ fn as_drawn(probe: &Probe) -> Drawn {
     drawn
 }
 
-/// The processor's blends of the fixed footprint, without drawing.
+/// Blends of the fixed footprint as the processor does them, the drawing's stages left out.
 fn blend(probe: &Probe, step: &mut Step<'_>, seed: u64) {
     let mut raster = Raster::default();
     raster.drawn = as_drawn(probe);
@@ -70,7 +69,7 @@ fn blend(probe: &Probe, step: &mut Step<'_>, seed: u64) {
     }
 }
 
-/// Number of differing counts on cells and films of two scenes, and of all counts.
+/// How many counts on cells and films of two scenes differ, of how many, and how many of a third one do.
 fn apart(one: &Scene, two: &Scene) -> (usize, usize) {
     let (mut off, mut all) = (0, 0);
     for slot in 0..SLOTS {
@@ -112,9 +111,9 @@ fn paint_goes_both_ways_in_whole_units() {
             let scene = || {
                 let mut scene = Scene::far(seed, 5.0);
                 scene.handling = handling;
-                // No refill from inside the brush.
+                // Nothing comes from inside the brush.
                 scene.traits.refill = 0.0;
-                // One more paint on the brush than on the canvas, and vice versa.
+                // One more paint on the brush than on the canvas, and the other way about.
                 (0..PAINTS + 2).for_each(|slot| {
                     scene.window.plane_mut(slot);
                 });
@@ -147,10 +146,7 @@ fn paint_goes_both_ways_in_whole_units() {
         println!(
             "{name}: {off} of {all} counts differ, {changed} changed, by other thresholds {faulty}"
         );
-        assert!(
-            off as f64 <= SHARE_MAX * all as f64,
-            "{name}: {off} of {all}"
-        );
+        assert!(off as f64 <= FEW * all as f64, "{name}: {off} of {all}");
         assert!(
             changed > 2000 && faulty > 20 * off.max(5),
             "{name}: {faulty}, a fault passes"
