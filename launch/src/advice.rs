@@ -2,7 +2,7 @@
 
 use maulstick_types::command::advice::Advice;
 
-/// What to do about it on a command line; `None` where the general words do.
+/// Remedy on a command line; `None` where the general words suffice.
 #[must_use]
 pub fn words(advice: &Advice) -> Option<String> {
     let words = match advice {
@@ -23,7 +23,7 @@ pub fn words(advice: &Advice) -> Option<String> {
         Advice::BeginExport => "`maulstick painting export -o FILE` begins an export",
         Advice::ListFormats => "`maulstick painting export --help` says what each format takes",
         Advice::Replace => {
-            "give another name, or say that the one that is there may go: `--replace`"
+            "give another name, or allow the existing file to be replaced: `--replace`"
         }
         Advice::SaveOrForget => {
             "keep it first: `maulstick painting save-as FILE.maul`; or say that it may go: `--forget`"

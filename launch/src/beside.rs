@@ -1,4 +1,4 @@
-//! Commands that programs beside this one carry out: those of `tools/`, which `./run` does not build, and anybody's.
+//! Commands in programs beside this one: those of `tools/`, which `./run` does not build, and others.
 //!
 //! As with cargo, `maulstick NAME …` runs the program `maulstick-NAME` that lies beside this one, with its own command line.
 //! A program of `tools/` may have commands of several groups, which [`PROGRAMS`] defines.
@@ -62,7 +62,7 @@ pub fn run_given(matches: &ArgMatches) -> Result<(), UserError> {
             package, folder, ..
         } = program;
         UserError::failure(format!(
-            "`{typed}` is a program of its own, which is not built"
+            "`{typed}` is a separate program, which is not built"
         ))
         .help(format!(
             "in the folder of the sources: cargo build --release -p {package}; \
@@ -73,10 +73,9 @@ pub fn run_given(matches: &ArgMatches) -> Result<(), UserError> {
     })
 }
 
-/// Runs the program of somebody else for a command that is unknown here; otherwise ends this one with the error.
+/// Runs another program for a command that is unknown here; otherwise exits with the error.
 ///
-/// # Errors
-/// A [`UserError`] where the program cannot be started.
+/// # Errors A [`UserError`] where the program cannot be started.
 pub fn run_unknown(error: &clap::Error) -> Result<i32, UserError> {
     let mut line = std::env::args_os().skip(1);
     if let (ErrorKind::InvalidSubcommand, Some(ContextValue::String(name)), Some(first)) = (
@@ -129,10 +128,9 @@ pub fn tool<C: Subcommand>(carry_out: impl FnOnce(&C) -> Result<i32, UserError>)
     finish(done.map_err(|fault| fault.worded(advice::words)))
 }
 
-/// Has unfinished files removed when a signal ends this process.
+/// Removes unfinished files when a signal ends this process.
 ///
-/// # Errors
-/// A [`UserError`] where signals cannot be watched.
+/// # Errors A [`UserError`] where signals cannot be watched.
 pub fn clear_files_on_signals() -> Result<(), UserError> {
     clear_on_signals(EXIT_INTERRUPTED)
         .map_err(|error| UserError::failure(format!("cannot watch for signals: {error}")))

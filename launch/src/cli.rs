@@ -33,7 +33,7 @@ struct Cli {
 enum Command {
     /// Start a rig and keep it running
     Up(up::UpOptions),
-    /// Check this machine, and say what mends what is wrong
+    /// Check this machine, with a remedy for each fault
     Doctor(doctor::DoctorOptions),
     /// List the processes of a rig, or run one by hand
     #[command(subcommand)]
@@ -177,7 +177,7 @@ pub fn run() -> Result<i32, UserError> {
     if overwrite {
         allow_overwriting();
     }
-    // What a window starts is called after the link in /proc that leads to its program.
+    // A process started by the window is named after the link in /proc to its program.
     set_name(c"maulstick").ok();
     // A rig ends its processes first, a node its work, a fitting its device.
     let handles_signals = match &command {
@@ -254,7 +254,7 @@ mod tests {
         }
     }
 
-    /// Edits that only a window asks for: their numbers are found with the pointer.
+    /// Edits of the window alone, whose numbers come from the pointer.
     const POINTED_AT: [&str; 4] = ["go_to", "name_layer", "place", "wells"];
 
     #[test]
@@ -298,10 +298,10 @@ mod tests {
         }
     }
 
-    /// Characters of the line that says what a command does, at most: a list of them stays in 100 columns.
+    /// Greatest length of a command's line of help, characters: a list of them fits 100 columns.
     const LINE: usize = 90;
 
-    /// What is wrong with a line of help.
+    /// The fault of a line of help.
     fn fault_of(line: &str) -> Option<&'static str> {
         let first = line.chars().next();
         match first {
@@ -315,7 +315,7 @@ mod tests {
         }
     }
 
-    /// What is wrong with the help of a command and of those below it.
+    /// Faults in the help of a command and its subcommands.
     fn faults(command: &clap::Command, path: &str, found: &mut Vec<String>) {
         let about = command.get_about().map(ToString::to_string);
         let about = about.unwrap_or_default();

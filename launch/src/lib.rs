@@ -3,8 +3,8 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`cli`] | the command line |
-//! | [`commands`] | what its subcommands do |
-//! | [`beside`] | commands of programs that lie beside this one |
+//! | [`commands`] | its subcommands |
+//! | [`beside`] | commands in programs beside this one |
 //! | [`up`] | the supervisor |
 //! | [`processes`] | the processes of a rig |
 //! | [`page`] | pictures made of patches, pictures and words |
@@ -16,13 +16,13 @@
 //! # The rig
 //!
 //! - One program runs as every process. The launcher starts, watches and ends them, and restarts what fails. A frozen
-//!   brush or paint is ended after 4.5 s; one that works or waits for a disk has longer; while the launcher stood still
-//!   itself, its clocks did too. A start that the system does not allow is tried again, later each time.
-//! - When paint, brush or player of a take dies, all three start afresh and the take is played from its start, as fast
-//!   as it can up to where it was.
-//! - Devices come and go in a running rig: the launcher checks one within the whole of the settings, writes those and
-//!   starts or ends one daemon. Renaming is both orders, with the force's state carried over. Brush nodes read
-//!   priorities and laws of force when the file changes.
+//!   brush or paint is ended after 4.5 s; one that works or waits for a disk has longer; the launcher's clocks stop
+//!   while it is itself stopped. A start that the system refuses is retried after growing pauses.
+//! - When paint, brush or player of a take dies, all three restart and the take is played from its start, as fast as
+//!   possible up to its earlier position.
+//! - Devices can be added and removed in a running rig: the launcher checks the settings with the change, writes them
+//!   and starts or ends one daemon. Renaming does both, and keeps the force's state. Brush nodes read priorities and
+//!   laws of force when the file changes.
 //! - Another painting is checked on another thread; the paint node then ends and starts with other settings, which
 //!   counts as no crash. Another file of the same painting needs no new node.
 //! - A rig with a window and no file begins a sketch in the user's state folder, a document like any other. The newest
@@ -43,7 +43,7 @@
 //!   beginning.
 //! - `recording replay --rate max` sends as the brushes have credit; with `--at` it puts a motion down live under the name
 //!   `motion`, so it is undone like any stroke.
-//! - `topic bridge` serves JSON of what is watched only. `topic graph` reads zenoh's administration space.
+//! - `topic bridge` serves JSON of watched topics only. `topic graph` reads zenoh's administration space.
 
 pub mod advice;
 pub mod beside;

@@ -7,7 +7,7 @@ use maulstick_bus::reason::{place, reason};
 use maulstick_rig::log::words;
 use maulstick_types::plain;
 
-/// Tells panics of this process as errors. Who asks for a backtrace gets what Rust says.
+/// Reports panics of this process as errors. With a requested backtrace Rust's own message appears.
 pub fn tell() {
     if std::env::var_os("RUST_BACKTRACE").is_none_or(|asked| asked == "0") {
         std::panic::set_hook(Box::new(|info| {

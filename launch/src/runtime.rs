@@ -10,10 +10,9 @@ use crate::EXIT_INTERRUPTED;
 /// Threads of a runtime: one may write a file while the other waits.
 const WORKERS: usize = 2;
 
-/// Runs a command to its end; what it left undone beside itself is abandoned.
+/// Runs a command to its end and abandons its background work.
 ///
-/// # Errors
-/// That of the command, or a [`UserError`] where no thread can be started.
+/// # Errors That of the command, or a [`UserError`] where no thread can be started.
 pub fn block_on<T>(command: impl Future<Output = Result<T, UserError>>) -> Result<T, UserError> {
     // Zenoh blocks in place, which a runtime of one thread does not allow.
     let runtime = Builder::new_multi_thread()
@@ -26,7 +25,7 @@ pub fn block_on<T>(command: impl Future<Output = Result<T, UserError>>) -> Resul
     result
 }
 
-/// Signals that ask a process to end: Ctrl-C, SIGTERM, and that its terminal is closed.
+/// Signals that ask a process to end: Ctrl-C, SIGTERM, and a closed terminal.
 #[derive(Debug)]
 pub struct EndSignals {
     interrupt: tokio::signal::unix::Signal,

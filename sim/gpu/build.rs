@@ -1,4 +1,4 @@
-//! Checks the shaders: an error in one is an error of the build.
+//! Checks the shaders, so that a shader error is a build error.
 
 #[path = "../../tools/check_shaders.rs"]
 mod check_shaders;

@@ -96,7 +96,7 @@ fn a_rig_whose_painting_is_removed_goes_on_beside_and_after_a_crash() {
     for name in ["x.maul", "x.maul-wal"] {
         std::fs::remove_file(place.path(name)).expect("removed");
     }
-    launcher.wait_says("goes on in");
+    launcher.wait_says("continues in");
     let kept = place.path("x-kept.maul").display().to_string();
     launcher.wait_says(&format!("painting in {kept}"));
     place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);

@@ -13,7 +13,7 @@ pub(crate) fn worded(error: &RequestError) -> UserError {
     }
 }
 
-/// What to do about it in this window; `None` where the general words do.
+/// Remedy in this window; `None` where the general words suffice.
 #[must_use]
 fn words(advice: &Advice) -> Option<String> {
     let words = match advice {
@@ -29,7 +29,9 @@ fn words(advice: &Advice) -> Option<String> {
         Advice::ListPaints => tr!("choose one of the panel Tubes"),
         Advice::UndoNewest => tr!("undo that first: Undo takes the newest step of all"),
         Advice::StopExport => tr!("wait for its end, or press Stop"),
-        Advice::Replace => tr!("write another name, or tick that the one that is there may go"),
+        Advice::Replace => {
+            tr!("enter another name, or tick that the existing file may be replaced")
+        }
         Advice::SaveOrForget => tr!("save it under another name first, or tick that it may go"),
         Advice::Say { .. }
         | Advice::Recover

@@ -7,32 +7,32 @@
 //! | [`rig`] | state of the rig, and requests to it |
 //! | [`view`] | the desk seen from above |
 //! | [`render`] | drawing of desk, surfaces and brushes |
-//! | `motions` | takes that are put on the canvas |
+//! | `motions` | takes placed on the canvas |
 //! | `matching` | from a colour to mixtures of paints |
 //! | `panels` | the panels, a folder each |
 //! | `dialogs` | files in the window: new, open, save, export, dropped files |
 //! | `reference` | a picture to paint after, and the mixtures of its colours |
 //! | `sessions` | recorder and player of sessions |
 //! | `settings_page` | the dialog of settings: text size, theme, units, keys |
-//! | `widgets` | parts of several panels that know the rig; those that do not are in `maulstick-ui-kit` |
+//! | `widgets` | parts of several panels that use the rig; the others are in `maulstick-ui-kit` |
 //! | [`settings`] | settings that outlive the window |
 //! | `spectrum_file` | spectra from CSV files |
 //!
 //! # Three parts
 //!
-//! What is known of the rig (plain data that a listener fills), what is asked of it (requests, sent on a thread for
-//! each node so that nobody waits), and what is drawn from the first. A panel reads one, writes the other, and is
-//! tested with neither bus nor window.
+//! The state of the rig (plain data filled by a listener), the requests to it (sent on a thread for each node so that
+//! the window never waits), and the drawing from the first. A panel reads one, writes the other, and is tested with
+//! neither bus nor window.
 //!
 //! Devices are changed by the functions that `maulstick device` calls, sessions recorded and played by those of
 //! `maulstick recording`. A painting is left only once its paint node has sent a status that is newer than the request.
 //!
 //! # Order and input
 //!
-//! - A request behind a stroke (dry, undo, load, export) waits until the samples that were newest then are states of a
-//!   brush, at most a second without credit, and takes its place right behind them. Where the hand has rested for a
-//!   second, it goes behind the newest state that is not painted. Brush changes do the same, and later strokes wait for
-//!   them (`ui/pending`).
+//! - A request behind a stroke (dry, undo, load, export) waits until the newest samples of that time are states of a
+//!   brush, at most a second without credit, and takes its place right behind them. If the hand has rested for a
+//!   second, it goes behind the newest unpainted state. Brush changes do the same, and later strokes wait for them
+//!   (`ui/pending`).
 //! - Under a held brush the view and surfaces stay; only the free hand moves the canvas. Surfaces move by `Place`
 //!   alone; where one may lie is one type for mouse, touch and 6-DOF mouse.
 //! - A press counts where it falls, and held keys if they were held before it. A resting pointer is sent once and keeps
@@ -40,23 +40,21 @@
 //!
 //! # Drawing
 //!
-//! - The window is drawn when a scene, state, frame or answer changes what is seen. Samples, statuses and credits
-//!   signal nothing, and are looked at ten times a second while they show work, else every one to three seconds.
-//! - A frame is begun when something has come and the device has drawn the last one. `ui/presented` names the brush
-//!   states that it holds. Brushes are drawn where the newest sample holds them, bent as in their newest state, with
-//!   shadows of three lights; a dark ground is lightened so that shadows show.
-//! - A surface is two sheets of tiles, each a torus, so a pan copies nothing: a *detail* for what is in view, and a
-//!   *base* of at most 512 cells a side. A sheet has at most two cells a pixel, whatever the canvas. The outer 25 cells
-//!   of a detail, whose shadows lack what lies beyond, are not shown. Another level is another sheet, shown once it is
-//!   whole.
-//! - The eye is above the middle of the desk, 2.5 times as high as the view is long. A mirror is a matter of the camera
-//!   alone.
+//! - The window is drawn when a scene, state, frame or answer changes its content. Samples, statuses and credits signal
+//!   nothing, and are checked ten times a second while they show work, else every one to three seconds.
+//! - A frame is begun on new data, once the device has drawn the last one. `ui/presented` names its brush states.
+//!   Brushes are drawn at their newest sample, bent as in their newest state, with shadows of three lights; a dark
+//!   ground is lightened so that shadows show.
+//! - A surface is two sheets of tiles, each a torus, so a pan copies nothing: a *detail* for the view, and a *base* of
+//!   at most 512 cells a side. A sheet has at most two cells a pixel, whatever the canvas. The outer 25 cells of a
+//!   detail, whose shadows are incomplete, are not shown. Another level is another sheet, shown once it is whole.
+//! - The eye is above the middle of the desk, 2.5 times as high as the view is long. Only the camera is mirrored.
 //!
 //! # Files, colours, words
 //!
-//! - Dialogs are the window's own and the desk goes on; folders and pictures are read on threads. A reference picture
-//!   is kept at 2048 pixels a side; a colour of it, the mean of 5×5 pixels, is searched among the palette's paints
-//!   under the scene's light. A tracing picture multiplies what is drawn between canvas and palette, remembered for
+//! - Dialogs are the window's own and the desk stays usable; folders and pictures are read on threads. A reference
+//!   picture is kept at 2048 pixels a side; a colour of it, the mean of 5×5 pixels, is searched among the palette's
+//!   paints under the scene's light. A tracing picture is multiplied over the canvas, below the palette, and stored for
 //!   each painting.
 //! - History lists thirty steps around the present one; `GoTo` undoes or redoes to one.
 //! - `tr!` keys are the English sentences; `languages` has a file for each language, and a test compares them with the
@@ -91,8 +89,8 @@ use maulstick_appearance::picture::Export;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::{NodeHandle, UserError};
 
-/// Shows the window until it is closed; `pointers` are the names of its mouse and its pen as devices, `export` says
-/// what the display is, `library` what paints there are.
+/// Shows the window until it is closed; `pointers` are the names of its mouse and its pen as devices, `export`
+/// describes the display, `library` has the paints.
 ///
 /// # Errors
 /// A [`UserError`] where there is no display or no GPU driver.
@@ -140,7 +138,7 @@ pub fn run(
     }
 }
 
-/// The reason why no window could be opened, with advice; another attempt would end the same way.
+/// The error of a window that could not be opened, with advice; another attempt would end the same way.
 fn unopened(error: &eframe::Error) -> UserError {
     match error {
         eframe::Error::Wgpu(error) => {
@@ -154,7 +152,7 @@ fn unopened(error: &eframe::Error) -> UserError {
                 Ok(value) => format!("{name}={value}"),
                 Err(_) => format!("{name} is not set"),
             };
-            UserError::usage("the display of the window is not there")
+            UserError::usage("the window has no display")
                 .at(format!("{}, {}", said("DISPLAY"), said("WAYLAND_DISPLAY")))
                 .help("set one of them; without a window: `maulstick up --headless`")
         }

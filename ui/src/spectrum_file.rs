@@ -67,7 +67,7 @@ pub(crate) fn reflectance(path: &Path) -> Result<String, UserError> {
     Ok(text)
 }
 
-/// A fault in one line: where, what, what to do.
+/// A fault in one line: place, fault, remedy.
 #[must_use]
 pub(crate) fn told(fault: &UserError) -> String {
     let place = fault.place.iter().map(|place| format!("{place}: "));

@@ -1,5 +1,5 @@
-//! Who may watch a rig: a browser lets every page open a connection to this machine, and every user of the machine reaches
-//! its ports.
+//! Admission of viewers of a rig: a browser lets every page open a connection to this machine, and every user of the
+//! machine reaches its ports.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -17,10 +17,10 @@ pub const FOXGLOVE: [&str; 2] = ["https://app.foxglove.dev", "file://"];
 const LONGEST: usize = 100;
 /// Time in which the same refusal is said once.
 const QUIET: Duration = Duration::from_secs(10);
-/// Most kinds of refusals that are told apart.
+/// Greatest number of distinguished refusals.
 const KINDS: usize = 64;
 
-/// What admits a viewer.
+/// Requirements for a viewer.
 #[derive(Clone, Debug)]
 pub struct Admission {
     /// The secret that its address has; none is asked for without one.
@@ -51,7 +51,7 @@ pub(crate) enum Refusal {
 #[error("'{0}' is no origin, such as http://localhost:8080")]
 pub struct NoOrigin(String);
 
-/// Reads an origin as browsers send it: a scheme and a host, with its port.
+/// Parses an origin in the form that browsers send: a scheme and a host, with its port.
 ///
 /// # Errors
 /// [`NoOrigin`] for another text.
@@ -67,13 +67,13 @@ pub fn origin(text: &str) -> Result<String, NoOrigin> {
 }
 
 impl Admission {
-    /// Sees whether the one who asks may watch.
+    /// Checks the request of a viewer.
     ///
     /// # Errors
     /// The [`Refusal`].
     pub(crate) fn judge(&self, request: &Request) -> Result<(), Refusal> {
         let headers = request.headers();
-        // More than one is what no browser sends.
+        // No browser sends more than one.
         for origin in headers.get_all(ORIGIN) {
             let origin = String::from_utf8_lossy(origin.as_bytes()).to_ascii_lowercase();
             if !self.origins.contains(&origin) {
@@ -101,7 +101,7 @@ impl Admission {
     }
 }
 
-/// Compares secrets in a time that does not depend on where they differ.
+/// Compares secrets in a time that is independent of the place of their difference.
 fn is_same(one: &str, other: &str) -> bool {
     let pairs = one.bytes().zip(other.bytes());
     one.len() == other.len() && pairs.fold(0, |differ, (a, b)| differ | (a ^ b)) == 0
@@ -120,7 +120,7 @@ impl Refusal {
     }
 }
 
-/// Refusals as they are said: each once in a while, with how many there were since.
+/// Refusals for the log: each kind once in an interval, with its count since.
 #[derive(Debug, Default)]
 pub(crate) struct Refusals(BTreeMap<Refusal, (Instant, u64)>);
 

@@ -1,5 +1,5 @@
-//! The secret in the address of the bridge: one of each user, kept, so that an address that a viewer remembers goes on to
-//! hold. Whoever reads the user's files may watch; other users of the machine, and pages, may not.
+//! The secret in the address of the bridge, one for each user, stored, so that an address remembered by a viewer stays
+//! valid. Programs with access to the user's files may watch; other users of the machine, and web pages, may not.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -13,7 +13,7 @@ use tempfile::NamedTempFile;
 /// Random bytes of a token.
 const BYTES: usize = 16;
 
-/// The token of this user; a new one where there is none.
+/// The token of this user, created if absent.
 ///
 /// # Errors
 /// A [`UserError`] where it cannot be read or kept.
@@ -25,7 +25,7 @@ pub fn own() -> Result<String, UserError> {
     kept_in(&folders.config_dir().join("bridge-token"))
 }
 
-/// The token in a file, which is made where there is none.
+/// The token in a file, created if absent.
 fn kept_in(path: &Path) -> Result<String, UserError> {
     match read(path)? {
         Some(token) => Ok(token),
@@ -47,7 +47,8 @@ fn read(path: &Path) -> Result<Option<String>, UserError> {
     Ok(is_sound.then(|| token.to_owned()))
 }
 
-/// A new token, or that of another bridge that has just made one. The file is whole under its name, or not there.
+/// A new token, or that of another bridge that has just made one. The file appears under its name completely or not at
+/// all.
 fn make(path: &Path) -> Result<String, UserError> {
     let failed = |error: Error| UserError::writing(path, &error);
     let folder = path.parent().unwrap_or_else(|| Path::new("."));
@@ -60,7 +61,7 @@ fn make(path: &Path) -> Result<String, UserError> {
     for byte in random {
         write!(token, "{byte:02x}").unwrap_or_default();
     }
-    // Its user alone may read it, as all files of this kind.
+    // Only its user may read it, like all files of this kind.
     let mut written = NamedTempFile::new_in(folder).map_err(failed)?;
     written
         .write_all(format!("{token}\n").as_bytes())
@@ -85,7 +86,7 @@ fn replace(path: &Path, token: String, written: NamedTempFile) -> Result<String,
             .at(path.display().to_string())
             .help("remove the file: another is made"));
     }
-    // Of bridges that find it damaged at the same time the first replaces it.
+    // The first of several bridges that find it damaged replaces it.
     there.lock().map_err(failed)?;
     match read(path)? {
         Some(token) => Ok(token),

@@ -10,11 +10,11 @@ use maulstick_types::scene::CANVAS;
 /// Setting of the backend.
 const PLACE: &str = "backend of [paint], or --backend";
 
-/// Has a painting's steps computed by the GPU from now on, and journals that, if the settings want it and there is one:
-/// `auto` takes a graphics processor of its own, and for what it does sooner; `gpu` takes any for all that one can do.
+/// Selects the GPU for a painting's steps, and journals that, if the settings request it and there is one:
+/// `auto` uses a separate graphics processor, for steps that it computes faster; `gpu` uses any, for all steps that it
+/// can compute.
 ///
-/// # Errors
-/// A [`UserError`] if it must be a GPU and there is none.
+/// # Errors A [`UserError`] if a GPU is required and there is none.
 pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), UserError> {
     let choice = match backend {
         "cpu" => return Ok(()),

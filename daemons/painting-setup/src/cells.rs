@@ -8,8 +8,8 @@ use maulstick_types::limits::CELLS_IN_ALL;
 use thiserror::Error;
 use maulstick_types::values::{CellSide, Quantity};
 
-/// Side of a cell in pictures, mm. A hand that paints has those of its rig, which are larger, so that a
-/// broad brush keeps up with it.
+/// Side of a cell in pictures, mm. Live painting uses those of its rig, which are larger, so that a broad brush keeps
+/// up with the hand.
 pub const PICTURE_CELL_MM: f64 = 0.125;
 /// Cells of a canvas either way.
 const SIDE: std::ops::RangeInclusive<f64> = 1.0..=65_536.0;
@@ -23,7 +23,7 @@ pub struct SheetCells {
 }
 
 impl SheetCells {
-    /// As asked for, or as in any picture, mm.
+    /// The requested side, or the default of pictures, mm.
     #[must_use]
     pub fn side_mm(self) -> f64 {
         self.cell_mm.unwrap_or(PICTURE_CELL_MM)
@@ -104,10 +104,10 @@ pub fn check_canvas(canvas: &CanvasSection) -> Result<(), UserError> {
     )))
 }
 
-/// Bytes that a cell takes in memory when it is painted on with three paints: their counts, and what is shown.
+/// Memory of a cell painted with three paints, bytes: their counts, and the display.
 const CELL_BYTES: f64 = 3.0 * 4.0 + 14.0;
 
-/// Whether the painter wants a canvas that is slow to paint on.
+/// Decision of the painter about a slow canvas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slowness {
     /// He has said so.
@@ -148,10 +148,9 @@ pub fn check_speed(canvas: &CanvasSection, slowness: Slowness) -> Result<(), Use
     )))
 }
 
-/// Checks that there is memory for a canvas that is in no file. The pages of one in a file leave memory.
+/// Checks that there is memory for a canvas without a file. The pages of one in a file can leave memory.
 ///
-/// # Errors
-/// A [`UserError`] with what it takes.
+/// # Errors A [`UserError`] with the memory needed.
 pub fn check_memory(canvas: &CanvasSection) -> Result<(), UserError> {
     let [width, height] = canvas.cells().map(f64::from);
     let bytes = width * height * CELL_BYTES;

@@ -12,7 +12,7 @@ use maulstick_rig::config::ViewSection;
 
 /// Name of the section in faults of rig.toml.
 pub const VIEW: &str = "[view] of rig.toml";
-/// A profile has at most this many bytes; those of printers take a few million.
+/// Greatest size of a profile, bytes; those of printers take a few million.
 const PROFILE_MAX: u64 = 64 << 20;
 
 /// Export settings of a section; `place` is its name in faults.

@@ -17,10 +17,9 @@ use crate::painting::painting_setup;
 use crate::paints::library_from;
 use crate::refusal::refused;
 
-/// A painting that is read: nothing is written.
+/// A painting for reading only.
 ///
-/// # Errors
-/// A [`UserError`] if it does not exist, or cannot be read.
+/// # Errors A [`UserError`] if it does not exist, or cannot be read.
 pub fn read(path: &Path) -> Result<(Document, Opened), UserError> {
     let settings = DocumentSettings::new(path, Access::Read);
     let (document, opened) = Document::open(&settings).map_err(|error| wrong(path, &error))?;
@@ -28,10 +27,9 @@ pub fn read(path: &Path) -> Result<(Document, Opened), UserError> {
     Ok((document, opened))
 }
 
-/// Copies a painting that nobody has open, with what a crash left beside it.
+/// Copies a painting that is not open, including the files left by a crash.
 ///
-/// # Errors
-/// A [`UserError`] where it cannot be read, or the copy not be written.
+/// # Errors A [`UserError`] where it cannot be read, or the copy not be written.
 pub fn copy_closed(from: &Path, to: &Path) -> Result<(), UserError> {
     for suffix in ["", "-wal"] {
         let [from, to] = [from, to].map(|path| companion(path, suffix));
@@ -46,11 +44,9 @@ pub fn copy_closed(from: &Path, to: &Path) -> Result<(), UserError> {
     Ok(())
 }
 
-/// A painting that goes on: as its file has it, or begun there as the settings say. Also tile versions
-/// up to which the file has it.
+/// A painting from its file, or a new one by the settings. Also the newest tile version in the file.
 ///
-/// # Errors
-/// A [`UserError`] where the file cannot be used, or the settings are wrong.
+/// # Errors A [`UserError`] where the file cannot be used, or the settings are invalid.
 pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u64), UserError> {
     go_on_by(config, path, Opened::sequencer)
 }
@@ -112,16 +108,15 @@ fn go_on_by(
 /// File at the path of a painting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
-    /// Nothing: it is to be begun there.
+    /// Absent: it is to be created there.
     New,
-    /// A painting.
+    /// A painting exists.
     There,
 }
 
-/// Sees, before anything is started, whether a painting can go on in a file, or be begun there.
+/// Checks, before anything is started, whether a painting can be continued in a file, or created there.
 ///
-/// # Errors
-/// A [`UserError`] where it cannot, or where an option is given that only a new painting takes.
+/// # Errors A [`UserError`] where it cannot, or for an option that only a new painting takes.
 pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, UserError> {
     if !glance(path).map_err(|error| wrong(path, &error))? {
         check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;
@@ -154,7 +149,7 @@ pub fn there(path: &Path) -> Result<(), UserError> {
     }
 }
 
-/// Devices are fitted to the canvas that a painting has, whatever the settings say.
+/// Copies the size of a painting's canvas into the settings, because devices are fitted to it.
 pub fn measure(section: &mut CanvasSection, scene: &Scene) {
     let mut surfaces = scene.surfaces.iter();
     if let Some(canvas) = surfaces.find(|surface| surface.id == CANVAS) {

@@ -6,10 +6,9 @@ use std::path::Path;
 use maulstick_rig::UserError;
 use maulstick_rig::size::show_bytes;
 
-/// Sees that there is memory for `what`.
+/// Checks that there is memory for `what`.
 ///
-/// # Errors
-/// A [`UserError`] where less than `bytes` is to be had.
+/// # Errors A [`UserError`] where less than `bytes` are available.
 pub fn check(what: &str, bytes: u64) -> Result<(), UserError> {
     match available().filter(|available| *available < bytes) {
         None => Ok(()),
@@ -22,8 +21,8 @@ pub fn check(what: &str, bytes: u64) -> Result<(), UserError> {
     }
 }
 
-/// Bytes that this process can still get: of the machine, of its control group, of its address space. None
-/// where the system says nothing.
+/// Memory available to this process, bytes: of the machine, of its control group, of its address space; `None` if
+/// unknown.
 fn available() -> Option<u64> {
     let read = |path: &str| std::fs::read_to_string(Path::new(path)).unwrap_or_default();
     let group = || {

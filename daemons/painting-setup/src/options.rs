@@ -13,7 +13,7 @@ use crate::brushes::brush_file;
 use crate::cells::{check_canvas, parse_cell_mm};
 use crate::paints::mixture_of;
 
-/// What is painted with, and on.
+/// Tools and canvas of a painting.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
 pub struct KitOptions {
     /// Size of the canvas in cells, such as 1024x1024
@@ -44,7 +44,7 @@ pub struct KitOptions {
     pub no_adapt: bool,
 }
 
-/// Options of a painting. What they leave open is as the take embeds it, else as rig.toml says.
+/// Options of a painting. Absent ones come from the take, else from rig.toml.
 #[derive(Args, Clone, Debug, Default)]
 pub struct PaintingOptions {
     /// Brush, canvas, loads and light.
@@ -101,10 +101,9 @@ pub fn parse_size(text: &str) -> Result<[u32; 2], SizeError> {
 }
 
 impl KitOptions {
-    /// Puts size, cells, brush, paints and light into the rig's settings, and returns the brush's section.
+    /// Writes size, cells, brush, paints and light into the rig's settings, and returns the brush's section.
     ///
-    /// # Errors
-    /// A [`UserError`] for an unknown brush, with the nearest name, and for too many cells.
+    /// # Errors A [`UserError`] for an unknown brush, with the nearest name, and for too many cells.
     pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, UserError> {
         if let Some(cell_mm) = self.cell_mm {
             config.canvas.cell_mm = cell_mm;
@@ -195,10 +194,9 @@ impl PaintingOptions {
         model.or_else(|| self.kit.for_a_new_one())
     }
 
-    /// As [`KitOptions::apply`], with memory, history, record, backend and paint model.
+    /// [`KitOptions::apply`] with memory, history, record, backend and paint model.
     ///
-    /// # Errors
-    /// As there, and for invalid sizes.
+    /// # Errors As there, and for invalid sizes.
     pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, UserError> {
         if let Some(memory) = &self.memory {
             config.paint.memory.clone_from(memory);

@@ -1,4 +1,4 @@
-//! Files that a command writes: none replaces one that it reads, nor another that it writes.
+//! Output files of a command: none replaces one of its inputs, nor another output.
 
 use std::path::{Path, PathBuf};
 
@@ -30,7 +30,7 @@ impl UsedFile {
         }
     }
 
-    /// As a file of this kind, which is written.
+    /// This file with its kind, as an output.
     #[must_use]
     pub fn of(self, kind: Kind) -> Self {
         Self { kind, ..self }
@@ -41,7 +41,7 @@ impl UsedFile {
         Self::given(what, path).map(|file| file.of(kind))
     }
 
-    /// The same where the file is given; nothing where it is not.
+    /// A file if its path is given; `None` otherwise.
     pub fn given<P: Into<PathBuf>>(what: &str, path: Option<P>) -> Option<Self> {
         path.map(|path| Self::new(what, path))
     }
@@ -59,7 +59,7 @@ impl UsedFile {
         (!known).then(|| Self::new("the spectrum of the light", name))
     }
 
-    /// A painting's file; what SQLite keeps beside it is no name for any other.
+    /// A painting's file; SQLite's companion files take no other name.
     pub fn painting(path: &Path) -> Self {
         Self::new("the painting", path)
     }
@@ -145,8 +145,8 @@ pub fn check_outputs(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), Ou
     })
 }
 
-/// A file that a node writes for a command. Nodes write over no file of another kind, so one that takes such
-/// a file's place is written beside it, and put there by the command that was given `--overwrite`.
+/// A file that a node writes for a command. Nodes never replace a file of another kind, so with `--overwrite` the node
+/// writes beside it, and the command moves the result.
 #[derive(Clone, Debug)]
 pub struct Relayed {
     to: PathBuf,
@@ -156,8 +156,7 @@ pub struct Relayed {
 impl Relayed {
     /// A file of a kind that [`check_outputs`] has found writable.
     ///
-    /// # Errors
-    /// A [`UserError`] where the path cannot be told as text, or the current folder is gone.
+    /// # Errors A [`UserError`] where the path is not UTF-8, or the current folder is gone.
     pub fn new(path: &Path, kind: Kind) -> Result<Self, UserError> {
         let to = PathBuf::from(whole_path(path)?.as_str());
         let written = if gives_way(&to, kind) {
@@ -169,18 +168,16 @@ impl Relayed {
         Ok(Self { to, written })
     }
 
-    /// The name that the node is given.
+    /// The name for the node.
     ///
-    /// # Errors
-    /// A [`UserError`] where it cannot be told as text.
+    /// # Errors A [`UserError`] where it is not UTF-8.
     pub fn asked(&self) -> Result<WholePath, UserError> {
         whole_path(&self.written)
     }
 
-    /// Gives the file its name once the node has written it, and that name in what the node said.
+    /// Renames the file once the node has written it, and puts its name into the node's answer.
     ///
-    /// # Errors
-    /// A [`UserError`] where it cannot be renamed; it stays beside that name.
+    /// # Errors A [`UserError`] where it cannot be renamed; it stays beside that name.
     pub fn arrive(&self, said: &str) -> Result<String, UserError> {
         if self.written != self.to {
             std::fs::rename(&self.written, &self.to)
@@ -250,7 +247,7 @@ fn is_same(one: &Path, other: &Path) -> bool {
     }
 }
 
-/// The whole name of a file that is not there.
+/// The absolute name of a file that may be absent.
 fn real(path: &Path) -> Option<PathBuf> {
     let folder = match path.parent() {
         Some(folder) if folder != Path::new("") => folder,

@@ -13,7 +13,7 @@ use maulstick_types::values::Quantity;
 
 use crate::refusal::refused;
 
-/// How colours are looked at.
+/// Options of light and observer.
 #[derive(Args, Clone, Debug)]
 pub struct ViewingOptions {
     /// Light: A, D50, D65, FL2, FL8, FL11, or a CSV file with the columns nm and power

@@ -26,9 +26,9 @@ use maulstick_painting_setup::surface::ground::GroundFile;
 use maulstick_painting_setup::surface::tooth::ToothPicture;
 use maulstick_painting_setup::{brush_file, mixture_of, refused};
 
-/// Lean of a stroke's handle for which nothing is said, degrees.
+/// Default lean of a stroke's handle, degrees.
 const LEAN_DEG: f64 = 25.0;
-/// Speed of a stroke for which nothing is said, mm/s.
+/// Default speed of a stroke, mm/s.
 const SPEED_MM_S: f64 = 120.0;
 /// No point of a stroke is farther from the canvas's corner, mm.
 const FARTHEST_MM: f64 = 5000.0;
@@ -128,7 +128,7 @@ pub(super) fn take(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, UserE
     if loads.as_ref().is_some_and(Vec::is_empty) {
         return Err(keys
             .fault("loads", "a list of no loads does nothing")
-            .help("leave it out: the brush paints on with what it has"));
+            .help("leave it out: the brush continues with its own paint"));
     }
     let mixture = |text: &str| keys.named("loads", None, mixture_of(text, library));
     let loads = loads.unwrap_or_default().into_iter().map(mixture);
@@ -137,7 +137,7 @@ pub(super) fn take(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, UserE
     Ok(Act::Take(take, loads))
 }
 
-/// Range of a key's number; what else is given is refused.
+/// Range of a key's number; other values are rejected.
 fn within(
     step: &Step<'_>,
     key: &str,
@@ -220,7 +220,7 @@ pub(super) fn stroke(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError
     Ok(Act::Stroke(stroke))
 }
 
-/// True if a name refers to something stored in a painting: only the painting can tell.
+/// True if a name refers to something stored in a painting, which alone can check it.
 fn is_held(name: &str) -> bool {
     name.starts_with(IMAGE) || name.starts_with(SPECTRUM)
 }
@@ -278,7 +278,7 @@ pub(super) fn light(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError>
     let keys = step.due(step.keys.table("light")?)?;
     if keys.keys().is_empty() {
         return Err(UserError::usage(
-            "a light of which nothing is said changes nothing",
+            "a step of the light without a setting changes nothing",
         ));
     }
     let given = keys.keys();

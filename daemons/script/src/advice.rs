@@ -2,7 +2,7 @@
 
 use maulstick_types::command::advice::Advice;
 
-/// What to do about it in a script; `None` where other words do.
+/// Remedy in a script; `None` where other words suffice.
 #[must_use]
 pub fn words(advice: &Advice) -> Option<String> {
     let words = match advice {

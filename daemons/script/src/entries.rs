@@ -25,7 +25,7 @@ const SHORT: usize = 40;
 pub(super) struct Source<'a> {
     /// Ends of its lines, bytes.
     pub(super) line_ends: &'a [usize],
-    /// Its file, as the user named it.
+    /// Its file, as named by the user.
     pub(super) name: &'a str,
     /// From where its paths count.
     pub(super) folder: &'a Path,
@@ -38,7 +38,7 @@ impl<'a> Source<'a> {
         format!("{}:{}", self.name, before + 1)
     }
 
-    /// A script that TOML's reader does not understand.
+    /// The error of a script that is not TOML.
     pub(super) fn no_toml(&self, error: &toml::de::Error) -> UserError {
         let message = error.message().lines().next().unwrap_or_default();
         UserError::usage(format!("this is no TOML: {message}"))
@@ -111,7 +111,7 @@ pub(super) struct Entries<'a> {
     pub(super) example: &'static str,
 }
 
-/// A value as it is spoken of.
+/// Description of a value.
 fn described(value: &DeValue<'_>) -> String {
     match value {
         DeValue::String(text) if text.chars().count() > SHORT => {

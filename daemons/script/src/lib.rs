@@ -1,4 +1,4 @@
-//! A script: a day at the easel, a step after the other.
+//! A script: steps of painting, one after the other.
 //!
 //! ```toml
 //! step = [
@@ -77,11 +77,11 @@ use maulstick_painting_setup::surface::tooth::ToothPicture;
 pub enum Act {
     /// Applies an edit; that of a brush is for the one in hand.
     Edit(Edit),
-    /// Takes up a brush: its name, its file, the share of its head that full pressure presses in.
+    /// Takes up a brush: its name, its file, the depth at full pressure as a share of its head.
     Brush(String, Box<BrushFile>, f64),
     /// Follows a take; its strokes load these mixtures in turn.
     Take(Take, Vec<Mixture>),
-    /// Paints a stroke with what the brush has.
+    /// Paints a stroke with the brush's load.
     Stroke(Stroke),
     /// Gives the canvas the ground of a picture.
     Ground(GroundFile),
@@ -91,7 +91,7 @@ pub enum Act {
     Wait(u32),
     /// Changes the light.
     Light(LightChange),
-    /// Takes so many steps back.
+    /// Undoes a number of steps.
     Undo(u32),
 }
 
@@ -126,10 +126,9 @@ pub struct Script {
 }
 
 impl Script {
-    /// Reads a script, its takes, brushes and pictures.
+    /// Reads a script, with its takes, brushes and pictures.
     ///
-    /// # Errors
-    /// A [`UserError`] with file and line, and what to do.
+    /// # Errors A [`UserError`] with file, line and remedy.
     pub fn read(path: &Path, library: &PaintLibrary) -> Result<Self, UserError> {
         let text = std::fs::read_to_string(path).map_err(|error| {
             let fault = UserError::reading(path, &error);

@@ -29,7 +29,7 @@ const BRUSH: &str = "main";
 /// The share of its head's length by which full pressure presses that brush in.
 const DEPTH_SHARE: f64 = 0.5;
 
-/// What is painted on.
+/// Canvas of a bundled painting.
 #[derive(Clone, Copy, Debug)]
 pub struct Board {
     /// Side of a cell, mm.
@@ -49,7 +49,7 @@ impl Board {
     }
 }
 
-/// Options of what is painted on.
+/// Options of the canvas.
 #[derive(Args, Clone, Debug)]
 pub struct BoardOptions {
     #[command(flatten)]
@@ -60,10 +60,9 @@ pub struct BoardOptions {
 }
 
 impl BoardOptions {
-    /// The board that is asked for.
+    /// The requested canvas.
     ///
-    /// # Errors
-    /// A [`UserError`] for a model that there is not.
+    /// # Errors A [`UserError`] for an unknown model.
     pub fn board(&self) -> Result<Board, UserError> {
         let board = Board::new(self.cells.side_mm());
         let Some(model) = &self.model else {

@@ -33,9 +33,9 @@ pub struct ScriptRunner<'a> {
     autosave: &'a mut Option<Autosave>,
     begun: Instant,
     bar: ProgressBar,
-    /// Time of the takes, strokes and waits so far, ns.
+    /// Duration of the takes, strokes and waits so far, ns.
     painted_ns: u64,
-    /// Steps done.
+    /// Number of steps done.
     done: u64,
 }
 
@@ -53,10 +53,9 @@ impl<'a> ScriptRunner<'a> {
         }
     }
 
-    /// Does the steps of a script, in their order.
+    /// Does the steps of a script, in order.
     ///
-    /// # Errors
-    /// A [`UserError`] with file and line of the step that the painting refuses; those before it are done.
+    /// # Errors A [`UserError`] with file and line of the refused step; those before it are done.
     pub fn follow_script(&mut self, script: Script) -> Result<(), UserError> {
         self.bar.inc_length(script.steps.len() as u64);
         let done = script.steps.into_iter().try_for_each(|(place, act)| {
@@ -138,7 +137,7 @@ impl<'a> ScriptRunner<'a> {
         Ok(())
     }
 
-    /// Takes a picture into the painting, and returns its hash.
+    /// Adds a picture to the painting, and returns its hash.
     fn embed(&mut self, bytes: Arc<[u8]>) -> Result<String, UserError> {
         let painting = self.offline.painting_mut();
         let hash = painting.embed(bytes).map_err(refused)?;
@@ -161,8 +160,8 @@ impl<'a> ScriptRunner<'a> {
                         .to_owned(),
                 ),
                 _ => (
-                    format!("{times} steps cannot be taken back: {there} can be"),
-                    format!("{{ undo = {there} }} takes all of them back"),
+                    format!("{times} steps cannot be undone: only {there} can"),
+                    format!("{{ undo = {there} }} undoes all of them"),
                 ),
             };
             return Err(UserError::usage(what).help(help));
@@ -227,7 +226,7 @@ impl<'a> ScriptRunner<'a> {
     }
 }
 
-/// Hands what is new to the document, if there is one.
+/// Saves new records to the document, if there is one.
 fn turn(autosave: &mut Option<Autosave>, begun: Instant, sequencer: &mut Sequencer) {
     if let Some(autosave) = autosave {
         autosave.turn(sequencer, begun.elapsed().as_nanos() as u64);

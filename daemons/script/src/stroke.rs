@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 use maulstick_num::{atan2, powf, sin_cos};
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 
-/// Samples a second.
 const RATE_HZ: f64 = 250.0;
 /// A dab, from the first touch to the last, s.
 const DAB_S: f64 = 0.3;
@@ -19,16 +18,16 @@ const NEAR_MM: f64 = 1e-3;
 /// Turn of a brush about its axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Turn {
-    /// By so many degrees from its broad side across the path.
+    /// Degrees from its broad side across the path.
     Way(f64),
-    /// By so many degrees from its broad side from left to right.
+    /// Degrees from its broad side from left to right.
     Canvas(f64),
 }
 
 /// A stroke.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stroke {
-    /// Points from the canvas's lower left corner, mm, and the pressure there, 0 to 1; one is a dab.
+    /// Points from the canvas's lower left corner, mm, with the pressure, 0 to 1; a single one is a dab.
     pub points: Vec<[f64; 3]>,
     /// Lean of the handle from upright, degrees.
     pub lean_deg: f64,
@@ -49,9 +48,9 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (x * x + y * y).sqrt()
 }
 
-/// Between two of four points: a centripetal Catmull-Rom spline by Barry and Goldman's pyramid (Yuksel,
-/// Schaefer and Keyser 2011), which neither loops nor overshoots where points are spaced unevenly. Pressure
-/// goes straight from one to the other.
+/// Between two of four points: a centripetal Catmull-Rom spline by Barry and Goldman's pyramid (Yuksel, Schaefer and
+/// Keyser 2011), which neither loops nor overshoots where points are spaced unevenly. Pressure is interpolated
+/// linearly.
 fn spline(points: [[f64; 3]; 4], share: f64) -> [f64; 3] {
     let mut knots = [0.0; 4];
     for i in 1..4 {
@@ -86,7 +85,7 @@ impl Stroke {
         for i in 0..last {
             let ends = [i.saturating_sub(1), i, i + 1, (i + 2).min(last)];
             let mut four = ends.map(|end| points[end]);
-            // Beyond its ends the curve goes on as it comes.
+            // Beyond its ends the curve continues straight.
             if i == 0 {
                 four[0] = [0, 1, 2].map(|k| 2.0 * four[1][k] - four[2][k]);
             }

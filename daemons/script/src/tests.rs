@@ -73,7 +73,7 @@ fn the_examples_of_the_help_are_right() {
     }
 }
 
-/// What is said of a script has these words, a place and help.
+/// The error of a script has these words, a place and help.
 fn says(fault: Result<Script, UserError>, words: &[&str]) {
     let fault = fault.expect_err(words[0]);
     let text = fault.to_string();
@@ -442,7 +442,7 @@ fn a_hundred_thousand_steps_have_their_lines() {
     assert!(script.steps[99_999].0.ends_with("day.toml:100002"));
 }
 
-/// Edits that a script does not ask for: it has no pointer, and leaves what is done to its writer.
+/// Edits that scripts do not have, because they need a pointer, or the script's own text takes their place.
 const NOT_IN_SCRIPTS: [&str; 8] = [
     "branch",
     "forget",
@@ -463,7 +463,7 @@ fn each_edit_is_read_from_its_step() {
             without.push(entry.name);
             continue;
         };
-        // Of several examples the first.
+        // The first of several examples.
         let end = form.example.find(" }, {");
         let end = end.map_or(form.example.len(), |at| at + 2);
         let script = read(&form.example[..end]).expect(form.example);

@@ -1,4 +1,4 @@
-//! The command.
+//! The command `maulstick`.
 
 fn main() {
     maulstick::panics::tell();

@@ -1,4 +1,4 @@
-//! `maulstick brush`: the brushes of the library, and one spine tried out by itself.
+//! `maulstick brush`: the brushes of the library, and trials of a single spine.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -185,9 +185,10 @@ fn solve(options: &SolveOptions) -> Result<i32, UserError> {
         text += "        s       mm       mm       mm       µJ      mm                \n";
     }
     for row in follow(&spine, &poses) {
-        text += &match options.json {
-            true => serde_json::to_string(&row).map_err(|e| UserError::failure(e.to_string()))?,
-            false => in_columns(&row),
+        text += &if options.json {
+            serde_json::to_string(&row).map_err(|e| UserError::failure(e.to_string()))?
+        } else {
+            in_columns(&row)
         };
         text.push('\n');
     }

@@ -58,7 +58,7 @@ fn forms(group: usize) -> impl Iterator<Item = CommandForm> {
     })
 }
 
-/// Its command, with the help of the edit and the options that say which rig.
+/// Its command, with the help of the edit and the options that select the rig.
 fn command(form: &CommandForm) -> clap::Command {
     let own = (form.augment)(clap::Command::new(form.name));
     let (about, long) = (own.get_about().cloned(), own.get_long_about().cloned());
@@ -98,10 +98,9 @@ impl<const GROUP: usize> FromArgMatches for EditCommand<GROUP> {
     }
 }
 
-/// Applies an edit to the painting of a running rig, with the file that it names, and says what it has done.
+/// Applies an edit to the painting of a running rig, with its file, and prints the result.
 ///
-/// # Errors
-/// A [`UserError`] with the refusal of the painting, where no rig runs, and for a file that cannot be read.
+/// # Errors A [`UserError`] with the refusal of the painting, where no rig runs, and for a file that cannot be read.
 pub fn run<const GROUP: usize>(command: &EditCommand<GROUP>) -> Result<i32, UserError> {
     let mut edit = command.edit.clone();
     let known = edits::read(&edit)?;
@@ -116,7 +115,7 @@ pub fn run<const GROUP: usize>(command: &EditCommand<GROUP>) -> Result<i32, User
     Ok(0)
 }
 
-/// Puts the spectrum of a file in the place of its path.
+/// Replaces the path of a spectrum file by its contents.
 fn read_ground(edit: Ground) -> Result<Ground, UserError> {
     let GroundSource::Named { name } = &edit.ground else {
         return Ok(edit);

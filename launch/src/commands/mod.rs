@@ -1,4 +1,4 @@
-//! The commands, in folders by what they work on; [`crate::cli`] groups them.
+//! The commands, in folders by subject; [`crate::cli`] groups them.
 //!
 //! | module | commands |
 //! | --- | --- |
@@ -62,18 +62,16 @@ macro_rules! say {
 }
 pub use say;
 
-/// Prints one line, whatever the names in it hold.
+/// Prints one line, whatever the names in it contain.
 ///
-/// # Errors
-/// As [`print_text`].
+/// # Errors As [`print_text`].
 pub fn print_line(line: &str) -> Result<(), UserError> {
     print_text(&format!("{}\n", maulstick_types::plain(line)))
 }
 
-/// Prints text; a reader that has seen enough, as `head` has, is no error.
+/// Prints text; a reader that closes the pipe, such as `head`, is no error.
 ///
-/// # Errors
-/// A [`UserError`] where it cannot be written.
+/// # Errors A [`UserError`] where it cannot be written.
 pub fn print_text(text: &str) -> Result<(), UserError> {
     match maulstick_rig::log::print(text) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -101,10 +99,9 @@ pub fn print_json_line(value: &Value) -> Result<(), UserError> {
     print_text(&format!("{value}\n"))
 }
 
-/// Writes a take and says what it holds.
+/// Writes a take and prints a summary.
 ///
-/// # Errors
-/// A [`UserError`] where the file cannot be written.
+/// # Errors A [`UserError`] where the file cannot be written.
 pub fn write_take(take: &Take, path: &Path) -> Result<(), UserError> {
     take.write(path)?;
     say!(

@@ -1,6 +1,6 @@
 //! Tables in text: columns as wide as their widest cell.
 
-/// No column is wider, characters: what is longer stands out, and moves the rest of its line.
+/// Greatest width of a column, characters; longer texts shift the rest of their line.
 const WIDEST: usize = 100;
 
 /// Rows with a head; all but the last column are padded.

@@ -45,7 +45,7 @@ impl Page {
         }
     }
 
-    /// Puts a picture with its upper left corner here.
+    /// Copies a picture here with its upper left corner.
     pub fn paste(&mut self, picture: &Picture, [x, y]: [usize; 2]) {
         for row in 0..picture.height {
             for column in 0..picture.width {
@@ -89,7 +89,7 @@ impl Page {
         }
     }
 
-    /// Puts a brush with its upper left corner here.
+    /// Draws a brush here with its upper left corner.
     pub fn portray(&mut self, portrait: &BrushThumbnail, [x, y]: [usize; 2]) {
         for (i, pixel) in portrait.rgba.chunks_exact(4).enumerate() {
             let at = [x + i % portrait.width, y + i / portrait.width];

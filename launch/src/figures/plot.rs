@@ -5,7 +5,7 @@ use maulstick_rig::UserError;
 
 use crate::page::Page;
 
-/// Colours of the curves, one after the other: Okabe and Ito's, which colour-blind readers tell apart.
+/// Colours of successive curves, from Okabe and Ito's palette for colour-blind readers.
 const COLOURS: [[u8; 3]; 7] = [
     [0, 114, 178],
     [213, 94, 0],
@@ -20,7 +20,7 @@ const AXIS: [u8; 3] = [120, 112, 104];
 /// Size of the words and of the title, pixels.
 const WORDS: f32 = 18.0;
 const TITLE: f32 = 22.0;
-/// Room beside a panel, pixels: left, top, right, bottom.
+/// Margins of a panel, pixels: left, top, right, bottom.
 const MARGIN: [usize; 4] = [92, 64, 110, 66];
 /// A panel within its margins, pixels.
 const PANEL: [usize; 2] = [560, 420];
@@ -56,7 +56,7 @@ pub struct Panel {
     pub curves: Vec<Curve>,
 }
 
-/// The ends of an axis from 0 that holds all `values`, with a little room.
+/// The ends of an axis from 0 that contains all `values`, with a margin.
 #[must_use]
 pub fn from_zero(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let most = values.fold(0.0, f64::max);

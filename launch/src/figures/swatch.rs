@@ -17,13 +17,14 @@ impl Terminal {
     /// Colour support of the standard output of this process.
     #[must_use]
     pub fn of_stdout() -> Self {
-        match std::io::stdout().is_terminal() {
-            true => Self::Colours,
-            false => Self::Plain,
+        if std::io::stdout().is_terminal() {
+            Self::Colours
+        } else {
+            Self::Plain
         }
     }
 
-    /// A block of `cells` characters with a space behind it; nothing in plain text.
+    /// A block of `cells` characters followed by a space; empty in plain text.
     #[must_use]
     pub fn block(self, [r, g, b]: [u8; 3], cells: usize) -> String {
         match self {
@@ -43,9 +44,10 @@ pub fn hex([r, g, b]: [u8; 3]) -> String {
 #[must_use]
 pub fn in_words(seen: &Seen) -> String {
     let [l, a, b] = seen.lab;
-    let gamut = match seen.in_gamut() {
-        true => "in gamut",
-        false => "out of the sRGB gamut",
+    let gamut = if seen.in_gamut() {
+        "in gamut"
+    } else {
+        "out of the sRGB gamut"
     };
     format!(
         "{}  L* {l:.1}  a* {a:.1}  b* {b:.1}  {gamut}",

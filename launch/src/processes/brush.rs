@@ -91,7 +91,7 @@ pub(super) fn run(options: &BrushOptions) -> Result<i32, UserError> {
     };
     let mut seen = modified();
     member.run(|| {
-        // The launcher writes them anew where a device has come, gone or changed.
+        // The launcher rewrites them when a device is added, removed or changed.
         let newest = modified();
         if newest != seen {
             seen = newest;

@@ -27,7 +27,7 @@ pub(crate) struct HapticOptions {
 }
 
 pub(super) fn run(options: &HapticOptions) -> Result<i32, UserError> {
-    // The servo takes its force back before it ends, so it is asked, not killed.
+    // The servo ramps its force down before it ends, so it is asked, not killed.
     let mut member = options.node.join(&options.device, Signal::SIGTERM)?;
     options
         .allow_library

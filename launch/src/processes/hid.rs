@@ -30,12 +30,12 @@ pub(crate) struct HidOptions {
 }
 
 pub(super) fn run(options: &HidOptions) -> Result<i32, UserError> {
-    // Beside the device's own daemon a recorder is a device by itself: two of them move no brush twice,
-    // for one alone has it at a time.
+    // Beside the device's own daemon a recorder acts as a separate device; only one of them moves a brush at a time.
     let beside = options.record.is_some() && options.node.node.is_none();
-    let name = match beside {
-        true => format!("{}{RECORDER}", options.device),
-        false => options.device.clone(),
+    let name = if beside {
+        format!("{}{RECORDER}", options.device)
+    } else {
+        options.device.clone()
     };
     // A recording gets its name at the end, so the process is asked to stop, not killed.
     let mut member = options.node.join(&name, Signal::SIGTERM)?;

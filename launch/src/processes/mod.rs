@@ -49,8 +49,7 @@ pub(crate) enum NodeCommand {
 
 /// Runs a process of a rig until it is told to stop.
 ///
-/// # Errors
-/// A [`UserError`].
+/// # Errors A [`UserError`].
 pub(crate) fn run(command: &NodeCommand) -> Result<i32, UserError> {
     command.program().name_this_process();
     match command {
@@ -81,9 +80,9 @@ impl NodeCommand {
 /// Program that a process of a rig runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Program {
-    /// A brush node.
+    /// Node that simulates one brush.
     Brush,
-    /// The paint node.
+    /// Node that simulates the paint.
     Paint,
     /// The daemon of a force-feedback stylus.
     Haptic,
@@ -91,9 +90,9 @@ pub enum Program {
     Hid,
     /// The player of a take.
     Player,
-    /// The recorder.
+    /// Recorder of sessions.
     Recorder,
-    /// The window.
+    /// The painter's window.
     Ui,
 }
 

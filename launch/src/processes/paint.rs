@@ -24,7 +24,7 @@ use maulstick_painting_setup::destination::{VIEW, export};
 use maulstick_painting_setup::document::{go_on_in_rig, wrong};
 use maulstick_painting_setup::{library_from, painting_setup, refused};
 
-/// A paint node that is to stop takes at most so many turns more: it is waited for.
+/// Greatest number of turns of a paint node after the request to stop, for which the launcher waits.
 const LAST_TURNS: u32 = 8;
 
 /// Options of the paint node.
@@ -72,15 +72,14 @@ pub(super) fn run(options: &PaintOptions) -> Result<i32, UserError> {
             _ => Ok(wait),
         }
     };
-    // Its token says that commands to the rig's brushes and takes of them are done: it has to know
-    // their files.
+    // Its token promises that commands to the rig's brushes and takes work, so it must know their files.
     let run = || {
         wait_for_brushes(&member, &mut node, &mut turn)
             .and_then(|()| member.ready())
             .and_then(|()| member.run(|| turn(&mut node)))
             .and_then(|()| paint_what_has_come(&mut node, &mut turn))
     };
-    // The brush takes one core already; the window and the frames find room between steps.
+    // The brush uses one core already; the window and the frames run between steps.
     let result = with_cores_beyond(1, run);
     member.stop.request();
     feed.ring();
@@ -94,7 +93,7 @@ pub(super) fn run(options: &PaintOptions) -> Result<i32, UserError> {
     result.and(ended).and(closed).map(|()| 0)
 }
 
-/// Has the node take turns until it has painted what had come when it was to stop.
+/// Runs the node until it has painted all messages received before the request to stop.
 fn paint_what_has_come(
     node: &mut PaintNode,
     turn: &mut impl FnMut(&mut PaintNode) -> Result<Duration, UserError>,
@@ -140,7 +139,7 @@ fn film_backend(name: &str) -> Box<dyn FilmBackend> {
     }
 }
 
-/// Has the node take turns until it knows every brush of rig.toml, or it is time to stop.
+/// Runs the node until it knows every brush of rig.toml, or is asked to stop.
 fn wait_for_brushes(
     member: &NodeHandle,
     node: &mut PaintNode,

@@ -1,5 +1,5 @@
-//! The terminal of a progress bar whose drawing waits for nobody: a bar is drawn whole, or not at all while the terminal
-//! stands still.
+//! The terminal of a progress bar, without blocking: the bar is drawn whole, or not at all while the terminal is
+//! stopped.
 
 use std::fmt::Write as _;
 use std::io;
@@ -9,7 +9,7 @@ use console::Term;
 use indicatif::{ProgressDrawTarget, TermLike};
 use maulstick_rig::log::show;
 
-/// The standard error, by way of the log.
+/// Standard error, through the log.
 #[derive(Debug)]
 pub(super) struct BarTerminal {
     terminal: Term,

@@ -115,7 +115,7 @@ impl Conductor {
         node(config, PLAYER, Role::Player, Program::Player, args)
     }
 
-    /// Takes in where the player is; returns its position in the take, ns.
+    /// Updates the player's progress; returns its position in the take, ns.
     pub fn follow(&mut self) -> u64 {
         while let Some(status) = self.statuses.try_recv() {
             let told = status.message;
@@ -129,7 +129,7 @@ impl Conductor {
         self.position_ns
     }
 
-    /// The take has to be played again: what the player said so far holds no more.
+    /// Resets the progress, because the take is played again.
     pub fn begin_again(&mut self) {
         self.follow();
         self.again = true;
@@ -141,10 +141,9 @@ impl Conductor {
         }
     }
 
-    /// Has the picture written once paint has consumed the end of the take; true when it is there.
+    /// Writes the picture once paint has consumed the end of the take; true when it is written.
     ///
-    /// # Errors
-    /// A [`UserError`] where it cannot be written.
+    /// # Errors A [`UserError`] where it cannot be written.
     pub fn snapshot(&mut self, bus: &Arc<dyn Bus>, topics: &Topics) -> Result<bool, UserError> {
         let Some(end) = &self.end else {
             return Ok(false);

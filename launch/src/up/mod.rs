@@ -3,10 +3,10 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`bar_terminal`] | the terminal of the bar while a take is played |
-//! | [`plan`] | which processes a rig has |
+//! | [`plan`] | processes of a rig |
 //! | [`processes`] | the processes: started, awaited, signalled |
 //! | [`supervisor`] | all of them: tokens, restarts, the table, the end |
-//! | [`conductor`] | a take that is played from its start to its picture |
+//! | [`conductor`] | playback of a take from its start to its picture |
 
 mod bar_terminal;
 pub mod conductor;
@@ -127,7 +127,7 @@ impl UpOptions {
         Ok(config)
     }
 
-    /// Checks the painting that is opened or begun: whether its file is there, and whether this machine can hold it.
+    /// Checks the painting to open or create: its file, and the memory of this machine.
     fn check_painting(
         &self,
         config: &mut RigConfig,
@@ -211,8 +211,7 @@ impl UpOptions {
 
 /// Runs the rig until it is told to stop.
 ///
-/// # Errors
-/// A [`UserError`] for bad settings or input, an occupied name, or nodes that do not stay up.
+/// # Errors A [`UserError`] for bad settings or input, an occupied name, or nodes that keep failing.
 pub fn run(options: &UpOptions) -> Result<i32, UserError> {
     if options.print_config {
         crate::commands::print_text(DEFAULT)?;
@@ -257,7 +256,7 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
     let start = Start {
         nodes,
         performance,
-        // In a painting that goes on the brushes carry what they carried.
+        // In a continued painting the brushes keep their loads.
         first_load: match (loads.into_iter().next(), presence) {
             (None, Some(Presence::There)) => None,
             (Some(load), _) => Some(load),
@@ -272,7 +271,7 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
     })
 }
 
-/// Makes the paths of settings absolute, after a look at the takes among them.
+/// Makes the paths of settings absolute, except takes that have been read.
 fn make_absolute(config: &mut RigConfig) -> Result<(), UserError> {
     for device in &mut config.device {
         if let Some(hand) = &mut device.hand {
@@ -303,14 +302,14 @@ fn make_absolute(config: &mut RigConfig) -> Result<(), UserError> {
     Ok(())
 }
 
-/// Settings without the simulated devices that no hand moves: a painter who attached none has the mouse.
+/// Settings without the simulated devices that no hand moves: a painter without devices has the mouse.
 fn unattended(mut config: RigConfig) -> RigConfig {
     let moves = |device: &DeviceSection| device.driver != "simulated" || device.hand.is_some();
     config.device.retain(moves);
     config
 }
 
-/// The same rig with the devices of this user. What is wrong with one is said, and the rig starts without it.
+/// The same rig with the devices of this user. A faulty one is reported, and the rig starts without it.
 fn with_own_devices(mut config: RigConfig) -> RigConfig {
     let own = user_devices::path().and_then(|path| user_devices::read(&path));
     for device in own.unwrap_or_else(|fault| {

@@ -7,11 +7,11 @@ use crate::processes::{Program, RECORDER, brush_node_name};
 /// Role of a process in the rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// The paint node.
+    /// Node that simulates the paint.
     Paint,
-    /// A brush node.
+    /// Node that simulates one brush.
     Brush,
-    /// A device daemon.
+    /// Daemon of a device.
     Device,
     /// The window: closed with success it ends the rig.
     Window,
@@ -70,9 +70,10 @@ pub fn node(
 #[must_use]
 pub fn device(config: &RigConfig, device: &DeviceSection) -> NodeSpec {
     let mut args = vec!["--device".to_owned(), device.name.clone()];
-    let program = match device.is_hid() {
-        true => Program::Hid,
-        false => Program::Haptic,
+    let program = if device.is_hid() {
+        Program::Hid
+    } else {
+        Program::Haptic
     };
     if program == Program::Haptic {
         for library in &config.allowed_libraries {
@@ -87,14 +88,14 @@ pub fn device(config: &RigConfig, device: &DeviceSection) -> NodeSpec {
 pub enum Window {
     /// One that shows the painting.
     Shown,
-    /// None.
+    /// No window.
     Headless,
 }
 
 /// Source of the brushes' motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hands {
-    /// Its devices.
+    /// Devices of the rig.
     Devices,
     /// A take, in their place.
     Take,

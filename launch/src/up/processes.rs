@@ -1,7 +1,7 @@
 //! The processes of a rig: each started in a group of its own, signalled, and awaited together.
 //!
-//! None can outlive its launcher: the launcher holds its standard input open and it ends when that ends; besides, the
-//! kernel signals it when the launcher's thread that started it dies. That is the main thread, on which the supervisor runs.
+//! None outlives its launcher: the launcher holds its standard input open, whose end makes it stop; the kernel also
+//! signals it when the launcher's thread that started it dies. That is the main thread, on which the supervisor runs.
 
 use std::collections::BTreeMap;
 use std::os::unix::process::CommandExt as _;
@@ -26,11 +26,9 @@ const LOOK: Duration = Duration::from_millis(5);
 /// End of a process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
-    /// With success.
     Well,
     /// With an exit code of bad usage: starting it again would not help.
     Refused(i32),
-    /// Otherwise.
     Badly,
 }
 
@@ -42,7 +40,6 @@ pub(super) struct Processes {
     ends: SignalStream,
 }
 
-/// A process.
 #[derive(Debug)]
 struct Process {
     child: Child,
@@ -120,12 +117,12 @@ impl Processes {
         if let Some(process) = self.running.get_mut(name) {
             process.stdin.take();
             process.signal(Signal::SIGTERM);
-            // A stopped process hears no other signal.
+            // A stopped process receives no other signal.
             process.signal(Signal::SIGCONT);
         }
     }
 
-    /// Kills the process of a node and all that it started; its end is awaited as if it had ended by itself.
+    /// Kills the process of a node and its children; its end is handled like any other.
     pub(super) fn kill(&mut self, name: &str) {
         if let Some(process) = self.running.get(name) {
             process.signal(Signal::SIGKILL);

@@ -1,17 +1,17 @@
 //! The supervisor: all processes of the rig, from their start to its end.
 //!
-//! One task waits for signals, ends of processes, messages and the next time at once, and hands what happens to its parts;
-//! they return actions, which it carries out.
+//! One task waits for signals, ends of processes, messages and the next deadline at once, and passes events to its
+//! parts; they return actions, which it carries out.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`crew`], [`node`] | the nodes as a state machine: restarts, time limits |
 //! | [`switch`] | another painting, as a state machine |
 //! | [`watchdog`] | nodes that make no progress |
-//! | [`turns`] | times in which the launcher stood still itself |
+//! | [`turns`] | times during which the launcher was stopped |
 //! | [`carry_out`] | actions of these, carried out |
-//! | [`requests`], [`orders`] | what is asked of the rig as a whole, and the server of it |
-//! | [`checks`] | checks of another painting, beside all else |
+//! | [`requests`], [`orders`] | requests to the rig as a whole, and their server |
+//! | [`checks`] | checks of another painting, in the background |
 //! | [`settings`], [`sketch`] | the settings and the painting's file |
 //! | [`folder`] | the rig's folder and its sockets |
 //! | [`loads`], [`shown`] | loads of new brushes; the table and the bar |
@@ -59,12 +59,12 @@ use switch::{CLOSE_TIME, Switch};
 use turns::Turns;
 use watchdog::Watchdog;
 
-/// Time in which all nodes end when asked; paint that is being written to a file has that of the switch.
+/// Time for all nodes to end on request; paint that writes a file has the switch's time.
 const GRACE: Duration = Duration::from_millis(1200);
 /// Longest time between two looks at the progress of nodes, the folder, and time limits.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// What a rig is started with.
+/// Inputs of a rig's start.
 #[derive(Debug)]
 pub struct Start {
     /// Its settings.
@@ -73,9 +73,9 @@ pub struct Start {
     pub nodes: Vec<NodeSpec>,
     /// A take that is played.
     pub performance: Option<Performance>,
-    /// Load of the brushes, unless they carry what they carried.
+    /// Load of the brushes, unless they keep theirs.
     pub first_load: Option<Mixture>,
-    /// The sketches, if a painting for which nobody names a file is one.
+    /// The sketches, if a painting without a file becomes one.
     pub sketches: Option<Sketches>,
 }
 
@@ -96,7 +96,7 @@ pub struct Supervisor {
     shown: Shown,
 }
 
-/// The rig's bus, and what of it concerns all nodes.
+/// The rig's bus, and its subscriptions for all nodes.
 struct Link {
     session: Arc<ZenohBus>,
     bus: Arc<dyn Bus>,
@@ -121,7 +121,7 @@ impl Link {
         let (status, queue) = (topics.node_status("*"), Queue::Ring(256));
         Ok(Self {
             tokens: bus.watch(&topics.node("*"), &wake)?,
-            // They are looked at in each turn, and wake nobody.
+            // They are read in each turn, without waking the task.
             statuses: Receiver::new(&*bus, &status, Qos::Background, queue, &Wake::new())?,
             session,
             bus,
@@ -179,10 +179,9 @@ impl Supervisor {
         Ok(supervisor)
     }
 
-    /// Keeps the rig running until it is told to stop, and returns the exit code.
+    /// Runs the rig until it is told to stop, and returns the exit code.
     ///
-    /// # Errors
-    /// A [`UserError`] where a node that the rig cannot do without does not stay up.
+    /// # Errors A [`UserError`] where an indispensable node keeps failing.
     pub async fn run(mut self, mut signals: EndSignals) -> Result<i32, UserError> {
         let end = loop {
             let now = Instant::now();
@@ -206,7 +205,7 @@ impl Supervisor {
         self.shown.end();
         self.link.stop.request();
         let is_kept = self.stop_all().await;
-        // Of a node that was killed nobody else would.
+        // A killed node leaves its shared memory behind.
         maulstick_bus::clear_shared_memory();
         self.settings.folder.withdraw();
         self.link.session.close();
@@ -218,7 +217,7 @@ impl Supervisor {
         }
     }
 
-    /// One look at everything; an exit code where the rig is to end.
+    /// One check of everything; an exit code where the rig is to end.
     fn turn(&mut self) -> Result<Option<i32>, UserError> {
         let now = Instant::now();
         if let Some(lost) = self.turns.begin(now) {
@@ -249,11 +248,11 @@ impl Supervisor {
         }
     }
 
-    /// Carries out what time alone asks for.
+    /// Carries out actions whose time has come.
     fn look(&mut self, now: Instant) -> Result<(), UserError> {
         let config = &self.settings.config;
         let mut actions = self.crew.look(now, config, self.switch.opened());
-        // A painting on its way to another file may hold paint up.
+        // A painting that moves to another file may delay paint.
         let spared = self.switch.is_busy().then_some(Role::Paint);
         actions.extend(self.watchdog.look(&self.crew.nodes, spared, now));
         let folder = &self.settings.folder;
@@ -263,7 +262,7 @@ impl Supervisor {
         self.carry_out(actions, now)
     }
 
-    /// All nodes are there: the table is shown, and new brushes loaded. A take that is played brings its own loads.
+    /// All nodes run: shows the table, and loads new brushes. A played take brings its own loads.
     fn come_up(&mut self) {
         let take = self.conductor.as_ref();
         let take_ns = take.map(|conductor| conductor.performance.length_ns);
@@ -277,7 +276,7 @@ impl Supervisor {
         self.loads.are_due = false;
     }
 
-    /// Where the motion of the brushes comes from.
+    /// Source of the brushes' motion.
     fn hands(&self) -> Hands {
         match self.conductor {
             Some(_) => Hands::Take,
@@ -305,15 +304,14 @@ impl Supervisor {
         }
         let has_window = self.crew.of_role(Role::Window).is_some();
         if has_window && conductor.performance.snapshot.is_none() {
-            // The painter looks at what was painted; the window's end is the rig's.
+            // The painter views the result; the rig ends with the window.
             self.conductor = None;
             return Ok(None);
         }
         Ok(Some(0))
     }
 
-    /// Asks all nodes to end, and ends those that do not; false where paint says that it could not keep
-    /// the painting.
+    /// Asks all nodes to end, and kills those that do not; false where paint reports an unsaved painting.
     async fn stop_all(&mut self) -> bool {
         let for_paint = if self.switch.is_saving() {
             tracing::info!("the rig ends when the painting is in its file");
@@ -321,7 +319,7 @@ impl Supervisor {
         } else {
             GRACE
         };
-        // The recorder ends last: it has what the others still send.
+        // The recorder ends last, so that it records the others' last messages.
         let is_kept = self
             .stop_those(|role| role != Role::Recorder, for_paint)
             .await;
@@ -368,7 +366,7 @@ impl Supervisor {
                 self.processes.ended().await;
             }
         };
-        // One that waits for a disk dies after that.
+        // A process that waits for a disk dies after that.
         tokio::time::timeout(GRACE, dead).await.ok();
         is_kept
     }

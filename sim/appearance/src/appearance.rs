@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use maulstick_optics::Studio;
 use maulstick_types::scene::Layer;
 
-/// Everything that turns the paint of a tile into colour.
+/// Conversion of a tile's paint into colour.
 #[derive(Clone, Debug)]
 pub struct Appearance {
-    /// The optics of the paints in use.
+    /// Optics of the paints in use.
     pub studio: Studio,
     /// Slot of the thinner, if it is in use.
     pub thinner: Option<usize>,
@@ -20,7 +20,7 @@ pub struct Appearance {
 }
 
 impl Appearance {
-    /// The first look of a painting.
+    /// The initial appearance of a painting.
     #[must_use]
     pub fn new(studio: Studio) -> Self {
         Self {
@@ -33,13 +33,13 @@ impl Appearance {
         }
     }
 
-    /// Content hash: looks with equal hashes show the same paint alike, in every process.
+    /// Content hash: appearances with equal hashes show the same paint alike, in every process.
     #[must_use]
     pub fn print(&self) -> i64 {
         self.print
     }
 
-    /// Notes what it is made of.
+    /// Adds one of its parts to the content hash.
     pub fn note(&mut self, made_of: &str) {
         // FNV-1a, 64 bits (Fowler, Noll, Vo).
         let hash = made_of
@@ -50,19 +50,19 @@ impl Appearance {
         self.print = hash as i64;
     }
 
-    /// Grows when light or opacities change: what was baked and shown before is to be done anew.
+    /// Counter of changes of light or opacities, each of which makes baked and displayed tiles obsolete.
     #[must_use]
     pub fn generation(&self) -> u64 {
         self.generation
     }
 
-    /// The look under another light; `studio` has the same paints in the same slots.
+    /// This appearance under another light; `studio` has the same paints in the same slots.
     pub fn relight(&mut self, studio: Studio) {
         self.studio = studio;
         self.generation += 1;
     }
 
-    /// The look of surfaces that were made anew.
+    /// The appearance after all surfaces were replaced.
     pub fn renew(&mut self) {
         self.generation += 1;
     }
@@ -73,7 +73,7 @@ impl Appearance {
         self.relief
     }
 
-    /// Sets that factor.
+    /// Sets the factor on the slopes of a relief in the colours.
     pub fn set_relief(&mut self, relief: f32) {
         if self.relief != relief {
             self.relief = relief;
@@ -81,7 +81,7 @@ impl Appearance {
         }
     }
 
-    /// Takes over the opacities of `layers`.
+    /// Copies the opacities of `layers`.
     pub fn set_layers(&mut self, layers: &[Layer]) {
         let changed = layers.iter().filter(|layer| layer.opacity != 1.0);
         let opacities = changed.map(|layer| (layer.number, layer.opacity)).collect();

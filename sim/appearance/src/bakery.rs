@@ -12,11 +12,11 @@ use maulstick_optics::{FilmPlanes, Under};
 use crate::appearance::Appearance;
 use crate::show_paint::ShowPaint;
 
-/// Baked tiles take this much at most, bytes; one with sixteen wavelengths takes 256 KiB.
+/// Limit on baked tiles, bytes; one with sixteen wavelengths takes 256 KiB.
 const KEPT_BYTES: usize = 128 << 20;
 
-/// Internal reflectances of stacks, a layer of all of them together: so all cores have work. If the backend fails,
-/// which is a fault of the program, the layer is left out.
+/// Internal reflectances of stacks, computed layer by layer for all of them together, so that all cores have work. If
+/// the backend fails, which is a fault of the program, the layer is left out.
 fn bake(
     look: &Appearance,
     shown: &dyn ShowPaint,
@@ -72,16 +72,16 @@ fn bake(
     baked.into_iter().map(Option::unwrap_or_default).collect()
 }
 
-/// A stack over a ground that is to be baked.
+/// A stack over a ground, to be baked.
 struct Unbaked<'a> {
     stack: &'a DryStack,
     ground: Under<'a>,
-    /// A lower part of it that is baked.
+    /// A lower part of the stack that is already baked.
     known: Option<(&'a DryStack, &'a [f32])>,
 }
 
 impl Unbaked<'_> {
-    /// Its layers from the lowest on that is not baked, and what is.
+    /// Its unbaked layers from the lowest up, and the baked part below.
     fn bottom_up(&self) -> (Vec<&DryStack>, Option<Vec<f32>>) {
         let mut links = Vec::new();
         let (mut next, mut start) = (Some(self.stack), None);
@@ -100,7 +100,7 @@ impl Unbaked<'_> {
     }
 }
 
-/// A baked tile: of which stack, and when it was last looked at.
+/// A baked tile: its stack, and the time of its last use.
 #[derive(Debug)]
 struct Baked {
     stack: Arc<DryStack>,
@@ -108,7 +108,7 @@ struct Baked {
     used: u64,
 }
 
-/// Baked tiles of one look, cached until they are next looked at.
+/// Baked tiles of one appearance, cached until their next use.
 #[derive(Debug, Default)]
 pub struct Bakery {
     kept: BTreeMap<(u32, TileId), Baked>,
@@ -132,8 +132,8 @@ impl Bakery {
             && kept.is_some_and(|kept| Arc::ptr_eq(&kept.stack, stack))
     }
 
-    /// Internal reflectances of what has dried on a tile, a plane a wavelength, over `ground`; its films are as `shown`. Of
-    /// a stack that only grew since, just the new layers are computed.
+    /// Internal reflectances of the dried paint on a tile, a plane a wavelength, over `ground`; its films are those of
+    /// `shown`. For a stack that only grew since, just the new layers are computed.
     pub fn planes(
         &mut self,
         sight: (&Appearance, &mut dyn FilmBackend),
@@ -146,7 +146,7 @@ impl Bakery {
         planes.pop().unwrap_or_default()
     }
 
-    /// As [`planes`](Self::planes), of several tiles of a surface, computed together.
+    /// [`planes`](Self::planes) of several tiles of a surface, computed together.
     pub fn planes_of(
         &mut self,
         (look, backend): (&Appearance, &mut dyn FilmBackend),
@@ -193,7 +193,7 @@ impl Bakery {
         all.into_iter().flatten().collect()
     }
 
-    /// Caches a baked tile, in the place of those that were looked at longest ago.
+    /// Caches a baked tile, in place of those used longest ago.
     fn keep(&mut self, place: (u32, TileId), stack: &Arc<DryStack>, planes: Arc<[f32]>) {
         self.bytes += size_of_val(&*planes);
         while self.bytes > KEPT_BYTES {
@@ -274,7 +274,7 @@ mod tests {
             (&second, ground),
         );
         assert!(one == two && grown.holds(&look, 0, id, &second));
-        // Back to the older stack, as an undo goes.
+        // Back to the older stack, as on undo.
         let back = grown.planes(
             (&look, &mut CpuFilms::new()),
             &Counted,

@@ -1,7 +1,7 @@
 //! A surface band by band. A band is a row of tiles; the highest is the first, as in a picture.
 //!
-//! Two threads do the bands, and what they make comes back in order: a surface of any height needs
-//! memory for a few of its bands, and the bytes made of it do not depend on who drew what.
+//! Two threads draw the bands, and the results are returned in order: a surface of any height needs memory for a few of
+//! its bands, and the bytes are independent of the threads.
 
 use std::collections::BTreeMap;
 use std::num::NonZero;
@@ -22,18 +22,18 @@ use crate::bakery::Bakery;
 use crate::blank_surface::BlankSurface;
 use crate::display::DisplayTile;
 
-/// Threads that draw: the stepper and its worker have the other cores.
+/// Number of drawing threads: the stepper and its worker have the other cores.
 const THREADS: usize = 2;
-/// Rows beyond a band that its shadows, its occlusion and its slopes reach.
-const BEYOND: usize = REACH as usize;
-/// Bands that a [`Shelf`] caches either side of the requested one: more than the threads are apart.
-const KEPT: usize = 6;
+/// Number of rows beyond a band on which its shadows, occlusion and slopes depend.
+const MARGIN_ROWS: usize = REACH as usize;
+/// Number of bands that a [`Shelf`] caches on either side of the requested one: more than the distance between the
+/// threads.
+const CACHED_BANDS: usize = 6;
 
-/// Does `jobs` jobs on two threads and hands what they make to `take`, on this thread and in order,
-/// with the number of the job. At most four results wait.
+/// Does `jobs` jobs on two threads and passes the results to `take`, on this thread and in order, with the number of
+/// the job. At most four results wait.
 ///
-/// # Errors
-/// The first of `take`, after which no more jobs begin.
+/// # Errors The first error of `take`, after which no more jobs begin.
 pub fn in_order<T: Send, E>(
     jobs: usize,
     job: impl Fn(usize) -> T + Sync,
@@ -64,7 +64,7 @@ pub fn in_order<T: Send, E>(
     })
 }
 
-/// Data that neighbouring bands share: made by the first that asks, dropped once the work is past it.
+/// Data shared by neighbouring bands: made on the first request, dropped once the work is past it.
 #[derive(Debug)]
 pub struct Shelf<T>(Mutex<BTreeMap<usize, Arc<OnceLock<Arc<T>>>>>);
 
@@ -78,25 +78,25 @@ impl<T> Shelf<T> {
     /// Data of a band.
     pub fn get(&self, band: usize, make: impl FnOnce() -> T) -> Arc<T> {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.retain(|other, _| other.abs_diff(band) <= KEPT);
+        kept.retain(|other, _| other.abs_diff(band) <= CACHED_BANDS);
         let place = Arc::clone(kept.entry(band).or_default());
         drop(kept);
         Arc::clone(place.get_or_init(|| Arc::new(make())))
     }
 }
 
-/// Heights of a band and of the rows beyond it that its light depends on.
+/// Heights of a band and of the neighbouring rows that its light depends on.
 #[derive(Clone, Debug)]
 pub struct BandHeights {
     heights: Vec<f32>,
     cells: [usize; 2],
     cell_m: f32,
-    /// The band's lowest row among these.
+    /// Index of the band's lowest row among these.
     pub first: usize,
 }
 
 impl BandHeights {
-    /// As the light takes them; row `first` is the band's lowest.
+    /// Height field for the light; row `first` is the band's lowest.
     #[must_use]
     pub fn field(&self) -> HeightField<'_> {
         HeightField {
@@ -153,7 +153,7 @@ impl<'a> Banded<'a> {
         self.store
     }
 
-    /// The surface without paint.
+    /// The unpainted surface.
     #[must_use]
     pub fn bare(&self) -> &'a BlankSurface {
         self.bare
@@ -212,21 +212,21 @@ impl<'a> Banded<'a> {
         }
     }
 
-    /// Heights of a band and of what is near it.
+    /// Heights of a band and its neighbouring rows.
     #[must_use]
     pub fn heights_around(&self, band: usize) -> BandHeights {
         let (width, rows) = (self.cells()[0], self.rows(band));
         let own = self.heights(band);
-        let mut heights = Vec::with_capacity((rows.len() + 2 * BEYOND) * width);
+        let mut heights = Vec::with_capacity((rows.len() + 2 * MARGIN_ROWS) * width);
         if band + 1 < self.bands() {
             let below = self.heights(band + 1);
-            heights.extend_from_slice(&below[below.len().saturating_sub(BEYOND * width)..]);
+            heights.extend_from_slice(&below[below.len().saturating_sub(MARGIN_ROWS * width)..]);
         }
         let first = heights.len() / width;
         heights.extend_from_slice(&own);
         if band > 0 {
             let above = self.heights(band - 1);
-            heights.extend_from_slice(&above[..above.len().min(BEYOND * width)]);
+            heights.extend_from_slice(&above[..above.len().min(MARGIN_ROWS * width)]);
         }
         BandHeights {
             cells: [width, heights.len() / width],
@@ -236,8 +236,8 @@ impl<'a> Banded<'a> {
         }
     }
 
-    /// A tile of it before light, with `tile` on it, by this thread alone. Baked layers are left in `bakery`, for the
-    /// next tile over the same dry layers.
+    /// A tile of the surface before light, with `tile` on it, drawn by this thread alone. Baked layers stay in
+    /// `bakery`, for the next tile over the same dry layers.
     #[must_use]
     pub fn shown(&self, id: TileId, tile: Option<&Tile>, bakery: &mut Bakery) -> DisplayTile {
         let ground = self.bare.ground.tile(id);

@@ -1,6 +1,6 @@
-//! A surface where no brush has been: its ground, its relief, and the paint in its wells.
+//! A surface without brush strokes: its ground, its relief, and the paint in its wells.
 //!
-//! A well's paint is booked when a brush first comes to it; until then it is only shown.
+//! A well's paint is booked when a brush first comes to it; until then it is only displayed.
 
 use std::sync::Arc;
 
@@ -16,28 +16,28 @@ use crate::ground::Ground;
 use crate::heap::{HeapCells, WELL_M};
 use crate::show_paint::ShowPaint;
 
-/// Thicknesses of a heap of which the colour is known: evenly from nothing to [`MOST_M`].
+/// Number of thicknesses with tabulated colour, evenly from zero to [`MOST_M`].
 const LEVELS: usize = 17;
-/// No heap is thicker, m.
+/// Greatest thickness of a heap, m.
 const MOST_M: f64 = 2.0 * WELL_M;
 
-/// A well as it looks.
+/// Display of a well.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WellLook {
     /// Its middle, cells.
     pub center: [f64; 2],
     /// Its radius, cells.
     pub radius: f64,
-    /// What it is.
+    /// Shape and colour.
     pub shape: WellShape,
 }
 
-/// What a well is, as it is seen. Colours are unlit, linear sRGB.
+/// Kind of a well for its display. Colours are unlit, linear sRGB.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WellShape {
     /// Paint from the tube.
     Heap(HeapCells, HeapColours),
-    /// A glass jar of this colour, seen from above. Nothing that brushes leave in it is seen.
+    /// A glass jar of this colour, seen from above. It hides all that brushes leave in it.
     Jar([f32; 3]),
 }
 
@@ -46,7 +46,7 @@ pub enum WellShape {
 pub struct HeapColours(Arc<[[f32; 3]; LEVELS]>);
 
 impl HeapColours {
-    /// The colours of a paint over a ground: its slots and shares in `studio`.
+    /// Colours of a paint over a ground, from its slots and shares in `studio`.
     #[must_use]
     pub fn of(studio: &Studio, shares: &[(usize, f64)], ground: &[f32]) -> Self {
         let thickness = |level: usize| MOST_M * level as f64 / (LEVELS - 1) as f64;
@@ -70,7 +70,7 @@ impl HeapColours {
         Self(Arc::new(std::array::from_fn(level)))
     }
 
-    /// The colour where it is so thick, m.
+    /// Colour at a thickness, m.
     fn at(&self, thickness_m: f64) -> [f32; 3] {
         let at = (thickness_m / MOST_M * (LEVELS - 1) as f64).clamp(0.0, (LEVELS - 1) as f64);
         let below = (at as usize).min(LEVELS - 2);
@@ -79,19 +79,19 @@ impl HeapColours {
     }
 }
 
-/// The cleaner, as it looks: spirits, linear sRGB.
+/// Colour of the cleaner: spirits, linear sRGB.
 pub const CLEANER_RGB: [f32; 3] = [0.30, 0.37, 0.40];
 /// The medium: oil, linear sRGB.
 pub const MEDIUM_RGB: [f32; 3] = [0.62, 0.36, 0.07];
-/// Glass on end: what is seen of a jar's wall, linear sRGB.
+/// Colour of a jar's wall, glass seen on end, linear sRGB.
 const GLASS_RGB: [f32; 3] = [0.50, 0.60, 0.58];
-/// Inner radius of a jar's wall, by the outer one.
+/// Inner radius of a jar's wall as a share of the outer one.
 const WALL: f64 = 0.84;
-/// Height of a jar's wall, and of what is in it, m.
+/// Heights of a jar's wall, and of its contents, m.
 const JAR_M: [f32; 2] = [2.5e-3, 1e-3];
 
 impl WellLook {
-    /// Its heap, if it is no jar.
+    /// Its heap; `None` for a jar.
     #[must_use]
     pub fn heap(&self) -> Option<&HeapCells> {
         match &self.shape {
@@ -100,8 +100,8 @@ impl WellLook {
         }
     }
 
-    /// Its height in a cell of the surface, m, and its colour. Light that falls into a jar from the upper left shines
-    /// through the far side of what is in it.
+    /// Its height in a cell of the surface, m, and its colour. Light from the upper left shines through the far side of
+    /// a jar's contents.
     fn at(&self, cell: [i64; 2]) -> (f32, [f32; 3]) {
         let rgb = match &self.shape {
             WellShape::Heap(heap, colours) => {
@@ -124,7 +124,7 @@ impl WellLook {
 pub struct WellCell {
     /// Its place in the tile.
     pub cell: usize,
-    /// True if the well hides what brushes left there.
+    /// True if the well hides the traces of brushes there.
     pub hides: bool,
     /// Its unlit colour, linear sRGB.
     pub rgb: [f32; 3],
@@ -132,21 +132,21 @@ pub struct WellCell {
     pub height_m: f32,
 }
 
-/// A surface without what was painted on it.
+/// A surface without its painting.
 #[derive(Clone, Debug)]
 pub struct BlankSurface {
-    /// Ground that it is primed with.
+    /// Ground of the primed surface.
     pub ground: Ground,
     /// Heights of the ground under the paint.
     pub relief: Arc<Relief>,
     /// Its wells.
     pub wells: Vec<WellLook>,
-    /// How the paint of its model is shown.
+    /// Display of its paint model.
     pub shown: &'static dyn ShowPaint,
 }
 
 impl BlankSurface {
-    /// The wet films of a tile on it that the optics shade; empty where nothing was painted.
+    /// The wet films of a tile on it for shading by the optics; empty where nothing was painted.
     #[must_use]
     pub fn films(&self, tile: Option<&Tile>) -> WetFilms {
         let tile = tile.filter(|_| self.shown.colouring() == Colouring::Films);
@@ -154,7 +154,7 @@ impl BlankSurface {
         films.unwrap_or_default()
     }
 
-    /// The dry layers of a tile on it that the optics bake.
+    /// The dry layers of a tile on it for baking by the optics.
     #[must_use]
     pub fn baked<'a>(&self, tile: Option<&'a Tile>) -> Option<&'a Arc<DryStack>> {
         let tile = tile.filter(|_| self.shown.colouring() == Colouring::Films);

@@ -1,4 +1,4 @@
-//! Unlit colour of tiles, as the view and the exports take it.
+//! Unlit colour of tiles, for the view and the exports.
 
 use half::f16;
 use half::slice::HalfFloatSliceExt as _;
@@ -16,7 +16,7 @@ use crate::blank_surface::BlankSurface;
 use crate::colouring::Colouring;
 use crate::show_paint::{Films, Seen, counted_films};
 
-/// A tile as it is shown, before light.
+/// Display of a tile before light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DisplayTile {
     /// Linear red, green, blue (sRGB primaries, unclamped).
@@ -25,7 +25,7 @@ pub struct DisplayTile {
     pub gloss: Vec<f32>,
     /// 1 where paint is wet.
     pub wetness: Vec<f32>,
-    /// Height of the surface there, tooth and paint, above its highest bare peaks, m.
+    /// Height of the surface, tooth and paint, above its highest bare peaks, m.
     pub height: Vec<f32>,
 }
 
@@ -41,14 +41,14 @@ impl WetFilms {
         Self(films.unwrap_or_default())
     }
 
-    /// The planes by slot, as the optics take them.
+    /// The planes by slot, for the optics.
     #[must_use]
     pub fn planes(&self) -> Vec<(usize, &[f32])> {
         let films = self.0.iter();
         films.map(|(slot, film)| (*slot, film.as_slice())).collect()
     }
 
-    /// Their colours over the ground under them: linear red, green, blue.
+    /// Colours of the films over their ground: linear red, green, blue.
     #[must_use]
     pub fn shade(&self, studio: &Studio, under: Under<'_>) -> [Vec<f32>; 3] {
         let mut rgb = [const { Vec::new() }; 3];
@@ -65,7 +65,7 @@ impl WetFilms {
     }
 }
 
-/// Height of wet films and of what has dried under them, m.
+/// Height of wet films and of the dried paint under them, m.
 pub(crate) fn height(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>) -> Vec<f32> {
     let mut height: Vec<f32> = match dry {
         Some(stack) => stack
@@ -84,11 +84,11 @@ pub(crate) fn height(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>) -> Vec
     height
 }
 
-/// Gloss of the topmost paint of a tile: by its share of thinner, and whether it is wet.
+/// Gloss of the topmost paint of a tile, from its share of thinner and its wetness.
 fn gloss(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>, thinner: Option<usize>) -> Vec<f32> {
     let mut gloss = vec![0.0; TILE_CELLS];
     let mut bare = TILE_CELLS;
-    // From the top down: a cell has the gloss of the first paint that is found in it.
+    // From the top down: a cell has the gloss of its topmost paint.
     let mut lay = |planes: &[(usize, &[f32])], wetness: f32| {
         for cell in 0..TILE_CELLS {
             if gloss[cell] > 0.0 {
@@ -186,7 +186,7 @@ impl DisplayTile {
         shown
     }
 
-    /// The display of a tile on a flat ground, as in [`on`](Self::on).
+    /// Display of a tile on a flat ground; see [`on`](Self::on).
     #[must_use]
     pub fn of(
         tile: Option<&Tile>,
@@ -207,8 +207,8 @@ impl DisplayTile {
     }
 
     /// The tile of the next level from its four children, of cells of side `cell_m`: lower left, lower right, upper
-    /// left, upper right; absent ones are beyond the edge and count as `outside`. Slopes that its cells no longer show
-    /// dull its gloss (Toksvig 2005).
+    /// left, upper right; absent ones are beyond the edge and count as `outside`. Slopes below its resolution reduce
+    /// its gloss (Toksvig 2005).
     #[must_use]
     pub fn coarser(children: [Option<&Self>; 4], outside: &Self, cell_m: f32) -> Self {
         let children = children.map(|child| child.unwrap_or(outside));
@@ -270,8 +270,8 @@ impl DisplayTile {
         }
     }
 
-    /// The planes as a frame carries them: red, green, blue, gloss, wetness as half floats, height
-    /// as floats, little endian.
+    /// The planes in the layout of a frame: red, green, blue, gloss, wetness as half floats, height as floats, little
+    /// endian.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(TILE_CELLS * 14);

@@ -1,4 +1,4 @@
-//! Ground of a surface: one reflectance everywhere, or a picture that is printed on it.
+//! Ground of a surface: one reflectance everywhere, or a printed picture.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
@@ -12,13 +12,13 @@ use maulstick_optics::colour::{SrgbTable, srgb_decode};
 use maulstick_optics::{Reflectance, Smooth, Spectrum, Studio, Under, Upsampler};
 use maulstick_types::paint::TILE;
 
-/// Grounds by name: internal reflectance, the same at every wavelength. Acrylic gesso is titanium
-/// white and chalk in a lean binder.
+/// Grounds by name: internal reflectance, equal at every wavelength. Acrylic gesso is titanium white and chalk in a
+/// lean binder.
 pub const GROUNDS: [(&str, f64); 3] = [("gesso", 0.95), ("grey", 0.35), ("black", 0.03)];
 
 /// Limit of the cached tile reflectances, bytes; a tile at sixteen wavelengths takes 256 KiB.
 const KEPT_BYTES: usize = 64 << 20;
-/// Limit of the colours with cached reflectance.
+/// Limit on the number of colours with cached reflectance.
 const KEPT_COLOURS: usize = 1 << 20;
 
 /// The ground of a surface, at the wavelengths of one studio.
@@ -26,7 +26,7 @@ const KEPT_COLOURS: usize = 1 << 20;
 pub enum Ground {
     /// Internal reflectance, a value a wavelength.
     Even(Vec<f32>),
-    /// A picture.
+    /// Colours and heights from a picture.
     Picture(Arc<PictureGround>),
 }
 
@@ -40,7 +40,7 @@ pub enum GroundTile<'a> {
 }
 
 impl GroundTile<'_> {
-    /// As films take it.
+    /// The ground as input of the films.
     #[must_use]
     pub fn under(&self) -> Under<'_> {
         match self {
@@ -51,9 +51,8 @@ impl GroundTile<'_> {
 }
 
 impl Ground {
-    /// The ground called `name` of a surface of `cells`: one of [`GROUNDS`], or `image:` and the
-    /// hash of a picture, which covers the surface, or `spectrum:` and the hash of a measured reflectance, which it has
-    /// everywhere.
+    /// The ground called `name` of a surface of `cells`: one of [`GROUNDS`], or `image:` and the hash of a picture,
+    /// which covers the surface, or `spectrum:` and the hash of a measured reflectance, which is uniform.
     ///
     /// # Errors
     /// [`LookError`] for an unknown name.
@@ -74,7 +73,7 @@ impl Ground {
         Ok(Self::Picture(Arc::new(picture)))
     }
 
-    /// Internal reflectance of the whole, a value a wavelength: of a picture, that of its mean colour.
+    /// Mean internal reflectance, a value a wavelength; for a picture, that of its mean colour.
     #[must_use]
     pub fn mean(&self) -> &[f32] {
         match self {
@@ -93,7 +92,7 @@ impl Ground {
     }
 }
 
-/// A picture that covers a surface, and what it reflects.
+/// A picture that covers a surface, and its reflectances.
 pub struct PictureGround {
     pixels: Arc<Colours>,
     cells: [u32; 2],
@@ -104,7 +103,7 @@ pub struct PictureGround {
     tiles: Mutex<BTreeMap<TileId, Arc<[f32]>>>,
 }
 
-/// From sRGB bytes to linear light and back.
+/// Tables from sRGB bytes to linear light and back.
 struct Tables {
     linear: Vec<f32>,
     bytes: SrgbTable,
@@ -145,8 +144,8 @@ impl PictureGround {
         }
     }
 
-    /// The colours of a tile's cells, encoded sRGB, row after row from the bottom. Beyond the surface's
-    /// edge the edge's goes on.
+    /// Colours of a tile's cells, encoded sRGB, row by row from the bottom. Beyond the surface the edge's colours
+    /// continue.
     #[must_use]
     pub fn colours(&self, id: TileId) -> Vec<[u8; 3]> {
         let cell = |i: usize| {
@@ -159,9 +158,10 @@ impl PictureGround {
         let own = (self.pixels.width, self.pixels.height) == (across, up);
         let at = |i: usize| {
             let [x, y] = cell(i);
-            match own {
-                true => self.pixels.values[y.min(up - 1) * across + x.min(across - 1)],
-                false => self.between([x, y]),
+            if own {
+                self.pixels.values[y.min(up - 1) * across + x.min(across - 1)]
+            } else {
+                self.between([x, y])
             }
         };
         (0..TILE_CELLS).map(at).collect()
@@ -213,7 +213,7 @@ impl PictureGround {
         planes
     }
 
-    /// The reflectance of each colour. They are fitted with no lock held, for several threads draw.
+    /// The reflectance of each colour, fitted without a lock, because several threads draw.
     fn smooth(&self, colours: &[[u8; 3]]) -> Vec<Smooth> {
         let mut distinct = colours.to_vec();
         distinct.sort_unstable();
@@ -247,7 +247,7 @@ impl fmt::Debug for PictureGround {
     }
 }
 
-/// Checks that there is a ground called `name`.
+/// Checks that a ground called `name` exists.
 ///
 /// # Errors
 /// [`LookError`] with what there is.
@@ -262,7 +262,7 @@ pub fn check_ground(name: &str, embedded: &Assets) -> Result<(), LookError> {
     ground_reflectance(name).map(drop)
 }
 
-/// The internal reflectance of a ground that is the same everywhere.
+/// The internal reflectance of a uniform ground.
 ///
 /// # Errors
 /// [`LookError`] with the names that there are.
@@ -284,7 +284,7 @@ fn parsed(bytes: &[u8]) -> Result<Reflectance, LookError> {
         .map_err(|error| LookError::Spectrum(error.to_string()))
 }
 
-/// Takes a spectrum in and returns its hash.
+/// Adds a spectrum and returns its hash.
 ///
 /// # Errors
 /// [`LookError`] with the line where the text is no table of reflectances.
@@ -329,7 +329,7 @@ mod tests {
         Studio::new(&StudioSettings::default(), library.paints())
     }
 
-    /// A picture of these size whose pixels are a function of column and row from the top.
+    /// A ground from a picture of this size whose pixels are a function of column and row from the top.
     fn ground(size: [u32; 2], cells: [u32; 2], of: impl Fn(u32, u32) -> [u8; 3]) -> Ground {
         let raw: Vec<u8> = (0..size[1])
             .flat_map(|y| (0..size[0]).map(move |x| (x, y)))
@@ -342,7 +342,7 @@ mod tests {
         Ground::called(&name, cells, &studio(), &embedded).expect("a ground")
     }
 
-    /// ΔE₀₀ between a bare cell as it is shown flat, its gloss added, and sRGB bytes.
+    /// ΔE₀₀ between a bare cell's flat display, gloss included, and sRGB bytes.
     fn off(ground: &Ground, id: TileId, cell: usize, rgb: [u8; 3]) -> f64 {
         let studio = studio();
         let tile = ground.tile(id);

@@ -1,7 +1,7 @@
-//! The shape of paint that was squeezed onto a palette.
+//! The shape of paint squeezed onto a palette.
 //!
-//! Stiff paint stays as it came out of the tube: a coil of a strand that rises to a tip. Much thinner makes it run
-//! level, a puddle.
+//! Stiff paint keeps the shape in which it left the tube: a coil of a strand that rises to a tip. With much thinner it
+//! runs level to a puddle.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -10,36 +10,36 @@ use maulstick_num::{atan2, exp, sin, sin_cos};
 use maulstick_optics::THINNER;
 use maulstick_types::Mixture;
 
-/// Thickness of the paint in a well in the mean, m.
+/// Mean thickness of the paint in a well, m.
 pub const WELL_M: f64 = 2e-3;
-/// Shares of thinner at which paint begins to run, and runs level.
+/// Shares of thinner from which paint begins to run, and from which it is level.
 const RUNS: [f64; 2] = [0.1, 0.4];
 /// Mean radius of the outline, and amplitudes of its second and third harmonic, in radii of the well.
 const OUTLINE: [f64; 3] = [0.93, 0.035, 0.02];
-/// Least and most turns of a strand from the outline to the middle.
+/// Least and greatest number of turns of a strand from the outline to the middle.
 const TURNS: [f64; 2] = [1.5, 2.4];
-/// Depth of the groove between two turns, over the height there.
+/// Depth of the groove between two turns, relative to the height there.
 const GROOVE: f64 = 0.3;
-/// Fall from the middle to the rim, by the height in the middle.
+/// Fall from the middle to the rim, relative to the height in the middle.
 const FALL: f64 = 0.2;
 /// Tip: distance from the middle and radius, in radii of the well; height, in heights of the heap.
 const TIP: [f64; 3] = [0.1, 0.13, 0.16];
-/// Height in the middle without the tip, over the mean height: of a heap, of a puddle.
+/// Height in the middle without the tip, relative to the mean height: of a heap, of a puddle.
 const RISE: [f64; 2] = [1.754, 1.240];
 
-/// A heap in a well.
+/// Shape of a heap in a well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heap {
-    /// How it lies, rad.
+    /// Orientation, rad.
     turn: f64,
-    /// Turns of its strand.
+    /// Number of turns of its strand.
     turns: f64,
-    /// 0 where it runs level, 1 where it stays as it was squeezed.
+    /// 0 for a level puddle, 1 for a heap as squeezed.
     stiffness: f64,
 }
 
 impl Heap {
-    /// The heap of a mixture: no two paints' look alike.
+    /// The heap of a mixture; each paint has a different one.
     #[must_use]
     pub fn of(mixture: &Mixture) -> Self {
         let thinner = mixture.parts.iter().filter(|part| part.paint == THINNER);
@@ -57,7 +57,7 @@ impl Heap {
         }
     }
 
-    /// Thickness at a place seen from the well's middle, by the well's radius, m.
+    /// Thickness at a place relative to the well's middle, in the well's radii, m.
     #[must_use]
     pub fn thickness_m(&self, [x, y]: [f64; 2]) -> f64 {
         let out = (x * x + y * y).sqrt();
@@ -71,7 +71,7 @@ impl Heap {
         let inside = 1.0 - rho * rho;
         // Flat, with a round rim.
         let puddle = (1.0 - rho.powi(16)).sqrt();
-        // Grooves where the strand comes round.
+        // Grooves between the turns of the strand.
         let strand = self.turns * rho + round / TAU;
         let across = 2.0 * (strand - strand.floor()) - 1.0;
         let bead = (1.0 - across * across).sqrt();
@@ -85,10 +85,10 @@ impl Heap {
     }
 }
 
-/// A heap in the cells of a surface.
+/// A heap by cells of a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeapCells {
-    /// The lowest cell that it has a thickness for.
+    /// Lower left cell of its grid.
     corner: [i64; 2],
     across: usize,
     thickness_m: Arc<[f32]>,

@@ -1,16 +1,16 @@
-//! Paint under light: what the counts of a canvas look like.
+//! Appearance of a canvas's paint under light.
 //!
 //! Pure: tiles, a ground and a light come in, colour, gloss and height go out, and pictures of whole surfaces.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`Appearance`], [`Bakery`] | optics of the paints in use, opacity of dry layers, and those layers baked |
-//! | [`light`], [`lamp`] | the scene's light as input of the optics, and its lamp over a surface |
-//! | [`ground`], [`blank_surface`] | what lies under the paint, and a surface without any |
+//! | [`light`], [`lamp`] | the scene's light for the optics, and its lamp over a surface |
+//! | [`ground`], [`blank_surface`] | the ground under the paint, and a surface without paint |
 //! | [`heap`] | the shape of paint in a well |
-//! | [`show_paint`], [`colouring`] | what the planes of a paint model mean to the optics, and how counts become colours |
-//! | [`display`] | a tile as it is shown before light: colour, gloss, height |
-//! | [`bands`] | a surface row of tiles by row of tiles |
+//! | [`show_paint`], [`colouring`] | display of a paint model's planes, and conversion of counts to colours |
+//! | [`display`] | display of a tile before light: colour, gloss, height |
+//! | [`bands`] | a surface by rows of tiles |
 //! | [`picture`] | surfaces under light as pixels |
 //!
 //! A film of 40 µm of ultramarine is darker over grey than over gesso:
@@ -44,11 +44,11 @@
 //! - Wet paint lies on reflectances baked from the dry layers below it, kept until a layer is added, its opacity
 //!   changes or the light does. Under another light a view gets all tiles anew, and the frame thread bakes the rest
 //!   tile by tile when idle.
-//! - `ShowPaint` says what a model's counts and planes mean: films for the optics, height, colour and gloss.
-//! - A well is a squeezed heap, seen before a brush comes and counted when it does.
+//! - `ShowPaint` interprets a model's counts and planes: films for the optics, height, colour and gloss.
+//! - A well is a squeezed heap, displayed before a brush comes and counted from then on.
 //! - Exports go band by band, a band being a row of tiles: two threads draw ahead of the one that writes, with the
-//!   heights of the 24 rows beyond. A PNG of 16384² takes 100 MB besides the paint, and its bytes do not depend on who
-//!   drew what.
+//!   heights of the 24 rows beyond. A PNG of 16384² takes 100 MB besides the paint, and its bytes are independent of
+//!   the threads.
 
 mod appearance;
 mod bakery;

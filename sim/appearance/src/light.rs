@@ -5,7 +5,7 @@ use maulstick_optics::colour::apply;
 use maulstick_optics::{Illuminant, Observer, RuleKind, Spectrum, StudioSettings};
 use maulstick_types::scene::Light;
 
-/// Optical settings of the light; its direction and strength are not among them.
+/// Optical settings of the light, without its direction and strength.
 ///
 /// # Errors
 /// [`LookError`] for a light out of bounds, or a name of no illuminant.
@@ -49,7 +49,7 @@ pub fn illuminant_named(name: &str) -> Result<Illuminant, LookError> {
     })
 }
 
-/// The light's own colour in linear sRGB: white to an eye that is adapted to it.
+/// The light's own colour in linear sRGB, which an adapted eye sees as white.
 #[must_use]
 pub fn cast(light: &Light) -> [f64; 3] {
     if light.adapted {
@@ -60,7 +60,7 @@ pub fn cast(light: &Light) -> [f64; 3] {
     })
 }
 
-/// True if two lights differ in their optical settings, so that all colours are to be computed anew.
+/// True if two lights differ in their optical settings, which requires all colours to be recomputed.
 #[must_use]
 pub fn changes_colour(one: &Light, other: &Light) -> bool {
     let spectral = |light: &Light| {

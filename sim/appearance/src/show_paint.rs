@@ -1,4 +1,4 @@
-//! What the planes of a paint model mean to the optics: films, height, columns, colour and gloss.
+//! Display of a paint model's planes: films, height, columns, colour and gloss.
 
 use std::collections::BTreeMap;
 use std::fmt::Debug;
@@ -15,32 +15,32 @@ use crate::display::{DisplayTile, height};
 
 /// Thickness of each paint of planes, m, by slot.
 pub type Films = Vec<(usize, Vec<f32>)>;
-/// Columns of a tile with air under paint, by cell: the top of what lies on the ground, then bottom and top of each piece over
-/// air, m above the highest bare peaks.
+/// Columns of a tile with air under paint, by cell: the top of the paint on the ground, then bottom and top of each
+/// piece over air, m above the highest bare peaks.
 pub type ColumnEnds = BTreeMap<usize, Vec<f32>>;
 
-/// A painted tile that is shown.
+/// A painted tile for display.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen<'a> {
     /// The optics.
     pub look: &'a Appearance,
-    /// Its surface without paint.
+    /// Unpainted surface of the tile.
     pub bare: &'a BlankSurface,
     /// Its place.
     pub id: TileId,
-    /// Its paint.
+    /// Paint of the tile.
     pub tile: &'a Tile,
 }
 
-/// How the paint of a model is shown. All are functions of a tile and of what it lies on.
+/// Display of a paint model. All methods are functions of a tile and its ground.
 pub trait ShowPaint: Debug + Send + Sync {
-    /// How its counts become colours. Where that is not by films, [`finish`](Self::finish) makes the colours of all paint,
-    /// wet and dry, out of those of the ground. Between models that differ in it conversions fit colours.
+    /// Conversion of its counts to colours. Other than by films, [`finish`](Self::finish) computes the colours of all
+    /// paint, wet and dry, from those of the ground. Between models of different colourings conversions fit colours.
     fn colouring(&self) -> Colouring {
         Colouring::Films
     }
 
-    /// Thickness of the paints of wet or dry planes as they are seen from above.
+    /// Thickness of the paints of wet or dry planes, seen from above.
     fn films(&self, planes: &Planes) -> Films {
         counted_films(planes)
     }
@@ -50,17 +50,17 @@ pub trait ShowPaint: Debug + Send + Sync {
         painted_height(self, tile)
     }
 
-    /// The columns in which there is air under paint, on cells of side `cell_m`.
+    /// Columns with air under paint, on cells of side `cell_m`.
     fn columns(&self, _relief: &Relief, _id: TileId, _tile: &Tile, _cell_m: f64) -> ColumnEnds {
         ColumnEnds::new()
     }
 
-    /// A tile of which a layer has just dried, with what its colours will have to know of that.
+    /// The tile with a layer that has just dried, and any note that its colours will need.
     fn dried(&self, tile: Tile) -> Tile {
         tile
     }
 
-    /// Changes colour and gloss to what the optics of films do not show.
+    /// Adds to colour and gloss the effects that the optics of films lack.
     fn finish(&self, _seen: &Seen<'_>, _shown: &mut DisplayTile) {}
 }
 
@@ -81,7 +81,7 @@ pub fn painted_height(shown: &(impl ShowPaint + ?Sized), tile: &Tile) -> Vec<f32
     height(&shown.films(&tile.wet()), dry)
 }
 
-/// Paint that is counted by slot and shown as films of it.
+/// Paint displayed as films of its counts by slot.
 #[derive(Clone, Copy, Debug)]
 pub struct Counted;
 

@@ -23,7 +23,7 @@ const LEAN: f64 = 0.3;
 const DEPTH_M: f64 = 0.008;
 /// Length of the drag, m.
 const DRAG_M: f64 = 0.020;
-/// Poses of pressing, and as many of dragging.
+/// Number of poses while pressing, and of poses while dragging.
 const POSES: u32 = 40;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,4 +1,4 @@
-//! Solver of a head: its spines are bent one after the other, among obstacles and each other.
+//! Solver of a head: its spines are bent in turn, among obstacles and each other.
 
 use glam::{DQuat, DVec3};
 use maulstick_num::geometry::Rigid;
@@ -14,18 +14,18 @@ use crate::spine::SpineShape;
 use crate::spine_layout::SpineLayout;
 use crate::spine_root::SpineRoot;
 
-/// Times that all spines are solved where the head is put down anew: each sees the others as they
-/// were, and nothing was before.
+/// Number of passes over all spines where the head is put down anew: each pass uses the others as they were, and
+/// there is no earlier state.
 const SETTLING: usize = 3;
 
-/// The handle has moved where it is farther than this from where it was, m.
+/// Distance of the handle from its last pose above which it has moved, m.
 const MOVED_M: f64 = 1e-6;
 
-/// A spine and what it touches.
+/// A spine with its contacts.
 #[derive(Clone, Debug)]
 struct SolvedSpine {
     shape: SpineShape,
-    /// Those of the first obstacle, the surface, come first: one a joint.
+    /// Constraints of the first obstacle, the surface, one a joint, before those of the others.
     constraints: Vec<ContactConstraint>,
     ends: Vec<DVec3>,
 }
@@ -38,7 +38,7 @@ pub struct SolvedHead {
     fresh: bool,
 }
 
-/// Solves head after head in the same room.
+/// Solver of heads, with reused buffers.
 #[derive(Clone, Debug, Default)]
 pub struct HeadSolver {
     solver: Solver,
@@ -73,7 +73,7 @@ impl SolvedHead {
         }
     }
 
-    /// Slides a head along the surface to `brush`, bent and touching as it is: nothing is dragged.
+    /// Slides a head along the surface to `brush` with its bend and contacts, without dragging.
     pub fn slide(&mut self, tuft: &SpineLayout, brush: &Rigid) {
         let to = tuft.core.root.frame(brush).translation;
         let by = (to - self.core.shape.root).with_z(0.0);
@@ -137,8 +137,7 @@ impl SolvedHead {
         angles
     }
 
-    /// The farthest that a joint moved along the surface from where it was in `before` while it
-    /// touched in both, m.
+    /// Greatest distance, m, that a joint which touches now and in `before` has moved along the surface.
     #[must_use]
     pub fn moved_in_contact(&self, before: &Self) -> f64 {
         let spines = self.spines.iter().zip(&before.spines);
@@ -154,8 +153,8 @@ impl SolvedHead {
             .fold(0.0, f64::max)
     }
 
-    /// Bends all spines of a head that has moved to `brush` outside all `obstacles`, of which the
-    /// first is the surface; whether all of them converged.
+    /// Bends all spines of a head that has moved to `brush` outside all `obstacles`, the first of which is the
+    /// surface; true if all converged.
     pub fn solve(
         &mut self,
         room: &mut HeadSolver,
@@ -172,7 +171,7 @@ impl SolvedHead {
             let frame = root.frame(brush);
             spine.shape.carry(frame.translation, frame.rotation);
         }
-        // The spines beside one are where the handle has carried them.
+        // Neighbouring spines are where the handle has carried them.
         for ((spine, root), ends) in self.spines.iter().zip(&tuft.roots).zip(&mut room.ends) {
             spine.shape.joints(&root.spine, ends);
         }
@@ -202,7 +201,7 @@ impl SolvedHead {
         converged
     }
 
-    /// Bends the core of a head that has moved to `brush`. An upright one gives way in the direction from which the
+    /// Bends the core of a head that has moved to `brush`. An upright core gives way in the direction from which the
     /// handle comes.
     fn bend_core(
         &mut self,
@@ -236,7 +235,7 @@ impl SolvedHead {
     }
 }
 
-/// Turns each joint's stops to the faces of the obstacles that it is outside of.
+/// Sets each joint's constraints to those obstacle faces that it is outside of.
 fn face(constraints: &mut Vec<ContactConstraint>, ends: &[DVec3], obstacles: &[Obstacle]) {
     let joints = ends.len();
     constraints.truncate(joints * obstacles.len().max(1));

@@ -1,5 +1,5 @@
-//! Stiffness of the head, for the force on the hand: k₁ of Baxter 2004, eq. 8.1, from the solved spines, the tuples of
-//! fig. 8.2 from the brush file, and the solved head itself as it is pressed down.
+//! Stiffness of the head, for the force on the hand: k₁ of Baxter 2004, eq. 8.1, from the solved spines, the tuples
+//! of fig. 8.2 from the brush file, and the solved head itself as it is pressed down.
 
 use glam::DVec3;
 use maulstick_num::geometry::{Rigid, rotation};
@@ -11,24 +11,24 @@ use crate::head_solver::{HeadSolver, SolvedHead, settings_of};
 use crate::spine_layout::SpineLayout;
 use crate::spine_root::SpineRoot;
 
-/// A head less pressed in than this share of its length feels as at rest.
+/// Depth, as a share of the head's length, below which its stiffness is that at rest.
 const LEAST_DEPTH: f64 = 0.04;
-/// Least extent of a head along the normal, as a share of its length: for a head pressed flat.
+/// Least extent along the normal of a head pressed flat, as a share of its length.
 const LEAST_ALONG: f64 = 0.2;
-/// A bent head feels at most this many times as stiff, or as soft, as at rest.
+/// Greatest factor by which a bent head is stiffer, or softer, than at rest.
 const MOST_STIFFENING: f64 = 4.0;
 
-/// Stiffness of a head, as the hand feels it.
+/// Stiffness of a head for the contact model of the hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeadStiffness {
-    /// k₁: the normal force at which the head would be pressed in by its whole length along the
-    /// normal, were it as stiff as between its first touch and how it is bent, N.
+    /// k₁: the normal force that would press the head in by its whole length along the normal, at the mean stiffness
+    /// from its first touch to its current bend, N.
     pub k1_n: f64,
 }
 
 impl HeadStiffness {
-    /// A head that touches nothing: half of the loads, summed, under which its spines begin to buckle (1/ΣK⁻¹ by the
-    /// length), for a head is rarely upright.
+    /// A head that touches nothing: half the summed loads under which its spines begin to buckle (1/ΣK⁻¹ by the
+    /// length), because a head is rarely upright.
     #[must_use]
     pub fn at_rest(tuft: &SpineLayout, length_m: f64) -> Self {
         let load = |root: &SpineRoot| {
@@ -69,12 +69,13 @@ const TUPLES: [[f64; 3]; 5] = [
     [1.0, 1.0, 1.0],
     [1.2, 1.9, 7.0],
 ];
-/// That force by k₁ at rest: from 5 to 13 for the heads of the library, solved.
+/// Force when the handle meets the surface, as a multiple of k₁ at rest: from 5 to 13 for the heads of the library,
+/// solved.
 const WHOLE: f64 = 7.0;
-/// That force at most, N.
+/// Greatest force when the handle meets the surface, N.
 const WHOLE_MOST_N: f64 = 3.0;
 
-/// The tuples of the Hermite curve of a brush: those of its file, or by the stiffness of its head.
+/// The tuples of the Hermite curve of a brush: those of its file, or derived from the stiffness of its head.
 #[must_use]
 pub fn tuples(file: &BrushFile) -> Vec<HermiteKnot> {
     let own = file.force.as_ref();
@@ -91,7 +92,7 @@ pub fn tuples(file: &BrushFile) -> Vec<HermiteKnot> {
     rows.iter().map(knot).collect()
 }
 
-/// The same tuples of a head made stiffer by a factor: all but the stop of the handle.
+/// The tuples of a head made stiffer by a factor, except the stop of the handle.
 #[must_use]
 pub fn tuned(tuples: &[HermiteKnot], factor: f64) -> Vec<HermiteKnot> {
     let mut tuned = tuples.to_vec();
@@ -106,7 +107,7 @@ pub fn tuned(tuples: &[HermiteKnot], factor: f64) -> Vec<HermiteKnot> {
     tuned
 }
 
-/// A head that is pressed onto a surface, solved.
+/// Solved contact of a head pressed onto a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Press {
     /// Pose of the brush, surface frame, m.
@@ -117,13 +118,12 @@ pub struct Press {
     pub stiffness_n_m: f64,
 }
 
-/// Step of depth for the force, m, and the larger one for its derivative: over a much shorter distance the joints
-/// stick, and the head is ten times as stiff as in a continued press.
+/// Step of depth for the force, m; its derivative uses the larger one: over much shorter distances the joints stick,
+/// and the head is ten times as stiff as in a continued press.
 pub(crate) const AT_ONCE_M: f64 = 5e-4;
 
-/// Lowers a brush, leaning by `theta`, onto the surface z = 0 and solves it where its undeformed
-/// point is at each of the rising `depths_m`. The ferrule is not lowered into the surface: below, the
-/// head is as it was there.
+/// Lowers a brush, leaning by `theta`, onto the surface z = 0 and solves it with its undeformed point at each of the
+/// ascending `depths_m`. The ferrule stops at the surface; beyond that depth the result stays the same.
 #[must_use]
 pub fn press(file: &BrushFile, theta: f64, depths_m: &[f64]) -> Vec<Press> {
     let (tuft, length) = (SpineLayout::of(file), file.length_m());

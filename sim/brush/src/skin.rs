@@ -1,8 +1,8 @@
-//! The skin of a head: a Catmull-Clark surface whose control vertices are tied to the spines by
-//! matrix skinning (Baxter 2004, § 3.5.1).
+//! The skin of a head: a Catmull-Clark surface whose control vertices are tied to the spines by matrix skinning
+//! (Baxter 2004, § 3.5.1).
 //!
-//! A control vertex is the mean, by its weights, of where each of its segments would carry it
-//! rigidly. Its mesh is that of the brush file, for example from Blender, or one around the strips.
+//! A control vertex is the weighted mean of the places to which its segments would carry it rigidly. Its mesh is that
+//! of the brush file, for example from Blender, or one around the strips.
 
 use glam::{DMat3, DQuat, DVec3};
 use maulstick_num::atan2;
@@ -20,9 +20,8 @@ use crate::subdivide::{Mesh, subdivide};
 const RINGS: [f64; 6] = [0.0, 0.2, 0.45, 0.7, 0.88, 0.98];
 const AROUND: usize = 12;
 /// A cubic B-spline through twelve points of a circle runs within it by this factor: (2 + cos 30°)/3.
-const WITHIN: f64 = 0.955_341_801_261_479_5;
+const SPLINE_RADIUS_FACTOR: f64 = 0.955_341_801_261_479_5;
 
-/// A control vertex.
 #[derive(Clone, Debug)]
 struct Vertex {
     /// Position at rest, brush frame, m.
@@ -37,27 +36,27 @@ pub struct Skin {
     control: Vec<Vertex>,
     /// Inverse frames of the segments at rest, each at its beginning.
     rest: Vec<Rigid>,
-    /// Shares of control vertices, those of vertex i from `starts[i]` to `starts[i + 1]`.
+    /// Offsets into the weights: those of vertex i are from `starts[i]` to `starts[i + 1]`.
     starts: Vec<usize>,
     shares: Vec<(u32, f32)>,
     faces: Vec<[u32; 4]>,
-    /// Of each vertex: its place around the head and along it, both 0 to 1.
+    /// Place of each vertex around the head and along it, both 0 to 1.
     places: Vec<[f32; 2]>,
 }
 
-/// A skin in space: planes of coordinates, one a vertex.
+/// A skin in space, as planes of vertex coordinates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SkinPose {
-    /// Right.
+    /// Coordinates to the right.
     pub x: Vec<f32>,
-    /// Up along the surface.
+    /// Coordinates up along the surface.
     pub y: Vec<f32>,
-    /// Above the surface: never below it.
+    /// Height above the surface, never negative.
     pub z: Vec<f32>,
 }
 
 impl SkinPose {
-    /// Takes all vertices away.
+    /// Removes all vertices.
     pub fn clear(&mut self) {
         for plane in [&mut self.x, &mut self.y, &mut self.z] {
             plane.clear();
@@ -117,7 +116,7 @@ impl Skin {
         })
     }
 
-    /// Faces: four vertices each.
+    /// Faces, as four vertex numbers each.
     #[must_use]
     pub fn faces(&self) -> &[[u32; 4]] {
         &self.faces
@@ -214,15 +213,15 @@ fn around(file: &BrushFile, tuft: &SpineLayout) -> (Mesh, Vec<Vertex>) {
             let root = edge(file.head.outline, turn);
             let place = ring * file.length_share(root.to_array());
             let at = DVec3::new(
-                root.x * file.radius_m(place) / WITHIN,
-                root.y * file.half_thickness_m(place) / WITHIN,
+                root.x * file.radius_m(place) / SPLINE_RADIUS_FACTOR,
+                root.y * file.half_thickness_m(place) / SPLINE_RADIUS_FACTOR,
                 -place * file.length_m(),
             );
             let shares = weights_of(&spines, nearest_in_hull(&spines, root));
             let mut weights = Vec::new();
             for (share, (first, joints)) in shares.iter().zip(&firsts) {
                 if *share > 1e-6 {
-                    // Between the middles of two segments both carry it.
+                    // Between the middles of two segments both carry the vertex.
                     let along = (ring * *joints as f64 - 0.5).clamp(0.0, (*joints - 1) as f64);
                     let (low, t) = (along as usize, along.fract());
                     weights.push((first + low, share * (1.0 - t)));

@@ -16,16 +16,16 @@ mod patch;
 use patch::{Bench, CELL_M};
 
 const START: DVec2 = DVec2::splat(0.1);
-/// Way of a sample, m: 60 mm/s.
+/// Path of a sample, m: 60 mm/s.
 const SAMPLE_M: f64 = 0.48e-3;
 /// Length of a stroke, m.
 const LENGTH_M: f64 = 0.03;
-/// Length of its beginning, m, and of the slices across which its mark is measured.
+/// Length of the beginning of a stroke, m, and of the slices across which its mark is measured.
 const BEGINNING_M: f64 = 0.008;
 const SLICE_M: f64 = 5e-4;
-/// Share by which differences of a mark of a few hairs count.
+/// Weight of differences in a mark of a few hairs.
 const SPARSE: f64 = 0.3;
-/// Slices before the point where the pen is set down.
+/// Number of slices before the point where the pen is set down.
 const BEFORE: usize = 40;
 
 /// A mark: the cells to the left and right of the way that it covers, slice after slice.
@@ -49,7 +49,7 @@ impl Slices {
         }
     }
 
-    /// How many of its cells of a slice are not even neighbours of the other's.
+    /// Number of its cells of a slice that are not even neighbours of the other's.
     fn beyond(&self, other: &Self, slice: usize) -> f64 {
         let near = |cell: i64| (-1..=1).any(|off| other.0[slice].contains(&(cell + off)));
         self.0[slice].iter().filter(|cell| !near(**cell)).count() as f64
@@ -65,8 +65,8 @@ struct Beginning {
     lack: f64,
 }
 
-/// A stroke of constant pressure in the direction `along`, its broad side across, with a pen that rests for so many
-/// samples before it goes.
+/// A stroke of constant pressure in the direction `along`, its broad side across, with a pen that rests for some
+/// samples before it moves.
 fn beginning(
     bench: &mut Bench,
     (tilt, along): ([f64; 2], f64),
@@ -149,7 +149,7 @@ fn a_stroke_of_constant_pressure_has_a_constant_mark_from_its_beginning() {
                         "{kind:8} {lean:2}° {along:4.1} {pressure:.1}: excess {:.2} lack {:.2}",
                         at_once.excess, at_once.lack
                     );
-                    // An upright head that just touches marks with a few hairs, now here, now there.
+                    // An upright head in light contact marks with a few hairs, irregularly.
                     let share = if lean == 0.0 && pressure < 0.5 {
                         SPARSE
                     } else {

@@ -32,7 +32,7 @@ fn blender(script: &Path, arguments: &[&Path]) {
     assert!(output.status.success(), "{}: {said}", script.display());
 }
 
-/// A fresh folder for what a test writes.
+/// A fresh folder for the files of a test.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     if folder.exists() {

@@ -1,12 +1,12 @@
-//! A clamped spine with a dead load at its tip: a wall without friction that holds the tip aside
-//! pushes it along its normal, whatever the spine's shape, with the multiplier of its constraint.
+//! A clamped spine with a dead load at its tip: a wall without friction that holds the tip aside pushes it along its
+//! normal, whatever the spine's shape, with the multiplier of its constraint.
 
 use glam::{DQuat, DVec3};
 use maulstick_brush::solver::{ContactConstraint, HalfSpace, Settings, Solver};
 use maulstick_brush::{Spine, SpineShape};
 
-/// Where the tip of a spine of length 1 and EI 1 is held when pushed aside by `offset` along `normal`,
-/// and the load that this takes.
+/// Position of the tip of a spine of length 1 and EI 1 pushed aside by `offset` along `normal`, and the load that
+/// this takes.
 fn held(spine: &Spine, normal: DVec3, offset: f64) -> (DVec3, f64) {
     let joints = spine.joints();
     let mut shape = SpineShape::straight(DVec3::ZERO, DQuat::IDENTITY, joints);

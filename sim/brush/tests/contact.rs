@@ -1,4 +1,4 @@
-//! What walls do to a spine: forces at every solution, sticking, sliding, and the energy's derivatives.
+//! Contact of a spine with walls: forces at every solution, sticking, sliding, and the energy's derivatives.
 
 use glam::{DMat3, DVec3};
 use maulstick_brush::energy::friction::Anisotropy;
@@ -85,7 +85,7 @@ impl Bench {
         matrix.inverse() * right
     }
 
-    /// Friction by normal force at the point now.
+    /// Friction divided by normal force at the point.
     fn share(&mut self) -> f64 {
         let force = self.reaction();
         force.truncate().length() / force.z

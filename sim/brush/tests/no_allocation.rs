@@ -1,4 +1,4 @@
-//! A solve allocates nothing: neither that of one spine nor that of a whole head.
+//! A solve allocates nothing, for one spine and for a whole head.
 
 #[path = "../../num/tests/counting/mod.rs"]
 mod counting;
@@ -25,7 +25,7 @@ fn place(step: usize, length: f64) -> Rigid {
     }
 }
 
-/// Steps of a stroke, of which the first half warms up.
+/// Number of steps of a stroke, the first half of which warms up.
 const STEPS: usize = 200;
 
 #[test]

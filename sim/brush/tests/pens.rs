@@ -18,8 +18,8 @@ fn tilts(lean: f64, toward: f64) -> [f64; 2] {
     [x, y].map(|part| maulstick_num::atan2(part * sine, cosine))
 }
 
-/// How far beside its point a still pen marks that is set down in so many samples, m; none where it
-/// touches nothing.
+/// Distance of a resting pen's mark from its point, m, set down over a number of samples; `None` where it touches
+/// nothing.
 fn beside(bench: &mut Bench, tilt: [f64; 2], pressure: f64, samples: u32) -> Option<f64> {
     for _ in 0..3 {
         bench.pen(POINT, tilt, 0.0);
@@ -68,7 +68,7 @@ fn the_mark_of_a_still_pen_lies_under_its_point() {
     }
 }
 
-/// A stroke there and back: how far beside the pen the mark lies at most.
+/// Greatest distance of a stroke's mark from the pen, there and back.
 #[test]
 fn the_mark_of_a_stroke_stays_under_the_pen() {
     for (kind, _) in LIBRARY {

@@ -8,8 +8,8 @@ mod desk;
 mod patch;
 use patch::{Bench, middle, width};
 
-/// Widest by the belly, while an upright brush is set down at once and drawn aside: in the first 10 mm
-/// and after them.
+/// Greatest width in widths of the belly, while an upright brush is set down at once and drawn aside: in the first 10
+/// mm and after them.
 fn widest(bench: &mut Bench, aside: DVec2) -> [f64; 2] {
     let belly = 1e-3 * bench.file.head.width_mm;
     let mut at = DVec2::new(0.1, 0.1);

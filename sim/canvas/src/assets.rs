@@ -1,11 +1,9 @@
-//! Pictures and spectra that a painting holds, by the hash of their bytes: what its grounds and teeth are
-//! made of.
+//! Pictures and spectra of a painting's grounds and teeth, by the hash of their bytes.
 //!
-//! A spectrum is a CSV file of nm,reflectance; the name of a ground that begins with [`SPECTRUM`] means
-//! one of them.
+//! A spectrum is a CSV file of nm,reflectance; the name of a ground that begins with [`SPECTRUM`] refers to one.
 //!
-//! Pictures are PNG files of two kinds: 8-bit RGB, which is sRGB, and 16-bit grey, which is heights. A name
-//! of a ground or a tooth that begins with [`IMAGE`] means one of them.
+//! Pictures are PNG files of two kinds: 8-bit RGB, which is sRGB, and 16-bit grey, which is heights. A name of a ground
+//! or a tooth that begins with [`IMAGE`] refers to one.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -22,19 +20,19 @@ pub const IMAGE: &str = "image:";
 pub const SPECTRUM: &str = "spectrum:";
 /// Signature of a PNG.
 const PNG: &[u8] = b"\x89PNG";
-/// Most pixels of a picture: 8192×8192.
+/// Greatest number of pixels of a picture: 8192×8192.
 pub const MOST_PIXELS: u64 = 1 << 26;
-/// Digits of a hash: SHA-256, lower-case hexadecimal.
+/// Number of digits of a hash: SHA-256, lower-case hexadecimal.
 const HASH_DIGITS: usize = 64;
 
-/// A decoded picture, row after row from the lowest.
+/// A decoded picture, row by row from the lowest.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pixels<T> {
-    /// Pixels across, 1 at least.
+    /// Pixels across, at least 1.
     pub width: usize,
-    /// Pixels up, 1 at least.
+    /// Pixels up, at least 1.
     pub height: usize,
-    /// The pixels.
+    /// Pixels of the picture.
     pub values: Vec<T>,
 }
 
@@ -43,14 +41,14 @@ pub type Colours = Pixels<[u8; 3]>;
 /// Heights, 0 the lowest.
 pub type Heights = Pixels<u16>;
 
-/// Content of a picture.
+/// Decoded content of a picture.
 #[derive(Clone, Debug)]
 enum Decoded {
     Colours(Arc<Colours>),
     Heights(Arc<Heights>),
 }
 
-/// A decoded picture that somebody may still hold.
+/// A decoded picture, held weakly.
 #[derive(Clone, Debug, Default)]
 enum CachedImage {
     #[default]
@@ -59,25 +57,25 @@ enum CachedImage {
     Heights(Weak<Heights>),
 }
 
-/// A picture, and what was last made of it.
+/// Bytes of a picture, and its decoded form.
 #[derive(Clone)]
 struct Entry {
     bytes: Arc<[u8]>,
     cached: Arc<Mutex<CachedImage>>,
 }
 
-/// The pictures of one painting.
+/// Pictures and spectra of one painting.
 #[derive(Clone, Default)]
 pub struct Assets(BTreeMap<String, Entry>);
 
-/// The hash by which a painting knows a picture of these bytes: SHA-256, lower-case hexadecimal.
+/// Hash of a picture's bytes: SHA-256, lower-case hexadecimal.
 #[must_use]
 pub fn hash_of(bytes: &[u8]) -> String {
     let digest = Sha256::digest(bytes);
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Kind of a file of these bytes, as documents name it.
+/// Type of a file by its bytes, for documents.
 #[must_use]
 pub fn kind_of(bytes: &[u8]) -> &'static str {
     if bytes.starts_with(PNG) {
@@ -88,7 +86,7 @@ pub fn kind_of(bytes: &[u8]) -> &'static str {
 }
 
 impl Assets {
-    /// Takes a picture in and returns its hash.
+    /// Adds a picture and returns its hash.
     ///
     /// # Errors
     /// [`CanvasError`] where the bytes are no PNG of the two kinds, or of too many pixels.
@@ -102,13 +100,13 @@ impl Assets {
         Ok(hash)
     }
 
-    /// Takes a picture or a spectrum in that was in a painting before, by its hash.
+    /// Adds a picture or a spectrum of an earlier painting, with its hash.
     pub fn know(&mut self, hash: String, bytes: Arc<[u8]>) {
         let cached = Arc::default();
         self.0.entry(hash).or_insert(Entry { bytes, cached });
     }
 
-    /// True if there is a picture of this hash.
+    /// True if a picture has this hash.
     #[must_use]
     pub fn holds(&self, hash: &str) -> bool {
         self.0.contains_key(hash)
@@ -158,7 +156,7 @@ impl Assets {
         Ok(decoded)
     }
 
-    /// The pixels of a picture of colours.
+    /// Pixels of a picture of colours.
     ///
     /// # Errors
     /// [`CanvasError`] if no file has this hash, or it is one of heights.
@@ -169,7 +167,7 @@ impl Assets {
         }
     }
 
-    /// The pixels of a picture of heights.
+    /// Pixels of a picture of heights.
     ///
     /// # Errors
     /// [`CanvasError`] if no file has this hash, or it is one of colours.
@@ -237,7 +235,7 @@ impl fmt::Debug for Assets {
     }
 }
 
-/// The same pictures: a hash says it.
+/// Pictures are equal if their hashes are.
 impl PartialEq for Assets {
     fn eq(&self, other: &Self) -> bool {
         self.0.keys().eq(other.0.keys())

@@ -1,7 +1,7 @@
-//! Dried paint of a tile: layers one over the other, as many as there are.
+//! Dried paint of a tile: any number of stacked layers.
 //!
 //! A stack is a list from the newest layer down, and shares its lower layers with every older version of the tile:
-//! drying a tile adds a link, whatever lies under it.
+//! drying a tile adds a link, whatever is below it.
 
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -10,7 +10,7 @@ use crate::page::{Evict, Page, Pager};
 use crate::planes::{Planes, TILE_CELLS, plane_counts};
 use crate::quantum::{Counts, SLOTS, add};
 
-/// Most dry layers of a tile: beyond them paint stays wet, for whatever looks at a tile goes through all of them.
+/// Greatest number of dry layers of a tile; beyond it paint stays wet, because reading a tile visits all of them.
 pub const DRY_LAYERS_MOST: usize = 4096;
 
 /// Paint of a tile that dried at one time.
@@ -33,7 +33,7 @@ pub struct DryStack {
     stored: AtomicBool,
 }
 
-/// Quanta of a layer and all below it, a cell: summed on demand.
+/// Quanta of a layer and all below it, by cell, summed on demand.
 #[derive(Debug)]
 struct Height {
     pager: Arc<Pager>,
@@ -71,14 +71,14 @@ impl Drop for Height {
 }
 
 impl DryStack {
-    /// `layer` over what dried before.
+    /// `layer` over the earlier stack.
     #[must_use]
     pub fn over(below: Option<Arc<Self>>, layer: DryLayer) -> Arc<Self> {
         let id = layer.planes.pager().number();
         Self::known(id, below, layer)
     }
 
-    /// As [`over`](Self::over), with the number that it has in its document.
+    /// `layer` over the earlier stack, with its number in the document.
     #[must_use]
     pub fn known(id: u64, below: Option<Arc<Self>>, layer: DryLayer) -> Arc<Self> {
         let height = Height {
@@ -96,7 +96,7 @@ impl DryStack {
         })
     }
 
-    /// Its number among the pages of the painting.
+    /// Number among the pages of the painting.
     #[must_use]
     pub fn id(&self) -> u64 {
         self.id
@@ -108,7 +108,7 @@ impl DryStack {
         self.stored.load(Relaxed)
     }
 
-    /// Notes that the document has it.
+    /// Marks it as stored in the document.
     pub fn note_stored(&self) {
         self.stored.store(true, Relaxed);
     }
@@ -125,7 +125,7 @@ impl DryStack {
         self.below.as_ref()
     }
 
-    /// Quanta of all layers, a cell.
+    /// Quanta of all layers, by cell.
     #[must_use]
     pub fn height(&self) -> Arc<[f32]> {
         if let Some(kept) = self.height.kept() {
@@ -192,7 +192,7 @@ impl DryStack {
 }
 
 impl Drop for DryStack {
-    /// Layer by layer: thousands of them would overflow the call stack otherwise.
+    /// Drops layer by layer: thousands of them would overflow the call stack otherwise.
     fn drop(&mut self) {
         if *self.stored.get_mut() {
             self.height.pager.bury(self.id);

@@ -8,24 +8,24 @@ pub enum CanvasError {
     /// The name of a pictured tooth that cannot be read.
     #[error("'{name}' does not name a tooth: {fault}")]
     ToothName {
-        /// The name.
+        /// Requested name.
         name: String,
-        /// What is wrong with it.
+        /// Fault, as a clause.
         fault: &'static str,
     },
     /// Bytes that are not a picture, or a picture of another kind or size.
     #[error("{0}")]
     Picture(String),
-    /// A picture that the painting does not hold.
+    /// A picture that the painting lacks, by its hash.
     #[error("this painting has no picture with the hash {0}")]
     NoPicture(String),
     /// A text that is not a hash.
     #[error("'{0}' is not the hash of a picture")]
     NoHash(String),
-    /// A picture of heights where one of colours is due.
+    /// A picture of heights instead of colours.
     #[error("a picture of heights cannot be a ground")]
     Heights,
-    /// A picture of colours where one of heights is due.
+    /// A picture of colours instead of heights.
     #[error("a picture of colours cannot be a tooth")]
     Colours,
 }

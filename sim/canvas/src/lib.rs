@@ -1,20 +1,20 @@
 //! Counted paint on surfaces: tiles and their versions, the relief under them, and windows leased on them.
 //!
-//! Pure, and it knows neither brush nor light: a paint model moves the counts of a window, and whoever shows them
-//! computes their colour.
+//! It depends on neither brush nor light: a paint model moves the counts of a window, and the appearance computes their
+//! colour.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`quantum`] | the unit in which paint is counted |
-//! | [`planes`], [`own_plane`] | planes of counts, and those that a paint model keeps of its own |
+//! | [`planes`], [`own_plane`] | planes of counts, and a paint model's own planes |
 //! | [`tile`], [`store`] | tiles, the tiles of a surface with their versions |
-//! | [`dry`], [`rewet`] | what has dried, layer over layer, and what becomes wet again |
+//! | [`dry`], [`rewet`] | dried layers, and their rewetting |
 //! | [`page`] | pages in memory, and the document behind them |
-//! | [`relief`] | what catches paint: tooth, made or from a picture, and the ride of a bristle over it |
+//! | [`relief`] | the surface that catches paint: tooth, generated or from a picture, and the ride of a bristle over it |
 //! | [`window`] | leased tiles as contiguous planes, on which kernels work |
-//! | [`assets`] | pictures and spectra that a painting holds |
+//! | [`assets`] | pictures and spectra of a painting |
 //!
-//! A drop on linen, taken back by putting the older version of its tile in place again:
+//! A drop on linen, undone by restoring the older version of its tile:
 //!
 //! ```
 //! use maulstick_canvas::relief::{Relief, tooth::Tooth};
@@ -44,19 +44,19 @@
 //! # Counting
 //!
 //! One thickness unit is 25 mm; a quantum is 2⁻²⁴ of it (1.5 nm) on one cell. A cell stores one count for each paint,
-//! exact in f32 up to one unit, the most that it holds. What several cells ask of one donor is summed, scaled together
-//! if it is too much, truncated once, taken from one side and given to the other; so the ledger balances to zero in
-//! whatever order cells are visited.
+//! exact in f32 up to one unit, its capacity. Requests of several cells to one donor are summed, scaled together if
+//! they exceed its stock, truncated once, taken from one side and given to the other; so the ledger balances to zero in
+//! any order of cells.
 //!
 //! # Tiles, pages, layers
 //!
 //! - Tiles are 64×64 cells, immutable and reference-counted. A window leases whole tiles, copies them into contiguous
 //!   planes for kernels, and writes them back as new versions; undo swaps versions.
-//! - A page holds the counts of a tile, wet or dried, or what a brush carries, and never changes. It may leave memory
-//!   once the document has it, and comes back when it is read; the last owner to drop it lets the document delete it.
+//! - A page holds the counts of a tile, wet or dried, or the load of a brush, and never changes. It may leave memory
+//!   once the document has it, and is read back on demand; the last owner to drop it lets the document delete it.
 //! - Dried paint is a list of layers shared with older versions of the tile: drying a whole tile moves its planes by
-//!   reference. Pages and links are numbered as they are made. A wet page older than the newest link is what that
-//!   link's drying left, so the link grows; a newer page gets a new link of the same layer, because two mixtures are
+//!   reference. Pages and links are numbered as they are made. A wet page older than the newest link is the remainder
+//!   of that link's drying, so the link grows; a newer page gets a new link of the same layer, because two mixtures are
 //!   not one.
 //! - Models keep planes of their own beside the counts (kind, type, values a cell); store, history and document keep
 //!   them without knowing what they mean.

@@ -1,14 +1,14 @@
-//! Planes that a paint model keeps of its own beside the counts: volumes, voxels, whatever it needs.
+//! A paint model's own planes beside the counts, for example volumes or voxels.
 //!
-//! Store, history and document keep them with the page that they are on, and know their shape, not their meaning.
+//! Store, history and document keep them with their page, by their shape, without interpreting them.
 
 use std::sync::Arc;
 
 use maulstick_types::paint::TILE;
 
-/// Planes that a model keeps for each paint, at most: a layer of it each.
+/// Greatest number of own planes for each paint, one a layer.
 pub const LAYERS_MOST: usize = 512;
-/// Kinds from here on are notes about the paint of their page.
+/// First kind of the notes about the paint of their page.
 const NOTES: u16 = 0xFF00;
 
 /// Type of the values of a plane, little-endian.
@@ -23,7 +23,7 @@ pub enum ValueType {
 }
 
 impl ValueType {
-    /// Bytes of a value.
+    /// Size of a value, bytes.
     #[must_use]
     pub fn bytes(self) -> usize {
         match self {
@@ -37,35 +37,35 @@ impl ValueType {
 /// Key of a plane among those of its page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct OwnShape {
-    /// Number that its model gives it.
+    /// Number chosen by its model.
     pub kind: u16,
     /// Type of its values.
     pub values: ValueType,
-    /// Values of a cell: its layers, its channels or the voxels of its column.
+    /// Number of values of a cell: its layers, its channels or the voxels of its column.
     pub per_cell: u16,
 }
 
 impl OwnShape {
-    /// True of a note about the paint of its page, which goes with the last of that paint.
+    /// True for a note about the paint of its page, which is dropped with the last of that paint.
     #[must_use]
     pub fn is_note(&self) -> bool {
         self.kind >= NOTES
     }
 
-    /// Bytes of a cell.
+    /// Size of a cell, bytes.
     #[must_use]
     pub fn cell_bytes(&self) -> usize {
         self.values.bytes() * usize::from(self.per_cell)
     }
 
-    /// Bytes of a tile.
+    /// Size of a tile, bytes.
     #[must_use]
     pub fn tile_bytes(&self) -> usize {
         TILE * TILE * self.cell_bytes()
     }
 }
 
-/// A plane of a tile: the values of cell after cell, row after row from the bottom. Zeros stand for nothing.
+/// A plane of a tile: values cell by cell, row by row from the bottom; zeros are empty.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OwnPlane {
     /// Its shape.

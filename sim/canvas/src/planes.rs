@@ -1,4 +1,4 @@
-//! Planes of a page: counts, one value a cell for each paint of a tile, and what its model keeps besides.
+//! Planes of a page: counts, one value a cell for each paint of a tile, and its model's own planes.
 
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
@@ -11,8 +11,8 @@ use crate::quantum::{Counts, SLOTS};
 /// Cells of a tile.
 pub const TILE_CELLS: usize = TILE * TILE;
 
-/// Planes of a page: one of counts for each paint that is there, in order of slot, and those that the paint model keeps of
-/// its own. Reads as the planes of counts.
+/// Planes of a page: one of counts for each paint that is present, in order of slot, and the paint model's own.
+/// Dereferences to the planes of counts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Planes {
     counts: Vec<(usize, Arc<[f32]>)>,
@@ -26,7 +26,7 @@ impl Planes {
         Self::default()
     }
 
-    /// The same counts with these planes of the model's own, as far as they hold anything but zeros.
+    /// The same counts with these own planes, without those that are all zeros.
     #[must_use]
     pub fn with_own(mut self, own: impl IntoIterator<Item = OwnPlane>) -> Self {
         let holds = |plane: &OwnPlane| plane.bytes.iter().any(|byte| *byte != 0);
@@ -35,19 +35,19 @@ impl Planes {
         self
     }
 
-    /// The planes that the model keeps of its own, in order of their shapes.
+    /// The model's own planes, in order of their shapes.
     #[must_use]
     pub fn own(&self) -> &[OwnPlane] {
         &self.own
     }
 
-    /// True if there is neither paint nor a plane of the model's own.
+    /// True if there is neither paint nor an own plane.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.counts.is_empty() && self.own.is_empty()
     }
 
-    /// Bytes in memory.
+    /// Size in memory, bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         let own = self.own.iter().map(|plane| plane.bytes.len());
@@ -97,7 +97,7 @@ pub fn plane_counts(planes: &Planes) -> Counts {
     counts
 }
 
-/// The planes that hold any paint.
+/// The planes with any paint.
 pub(crate) fn painted(planes: impl Iterator<Item = (usize, Arc<[f32]>)>) -> Planes {
     planes
         .filter(|(_, plane)| plane.iter().any(|count| *count != 0.0))

@@ -1,8 +1,7 @@
-//! Paint is counted.
+//! Quanta: the unit in which paint is counted.
 //!
-//! A quantum is a volume: 2⁻²⁴ thickness unit (1.5 nm) on one cell of the unzoomed canvas. Counts
-//! up to one unit, the most that a cell holds, are exact in f32; sums are exact in integers, so the
-//! ledger balances to zero in whatever order cells are visited.
+//! A quantum is a volume: 2⁻²⁴ thickness unit (1.5 nm) on one cell of the unzoomed canvas. Counts up to one unit, a
+//! cell's capacity, are exact in f32; sums are exact in integers, so the ledger balances to zero in any order of cells.
 
 use std::ops::{Deref, DerefMut};
 
@@ -11,15 +10,15 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// One thickness unit of the dissertation, m.
 pub const UNIT_M: f64 = 0.025;
-/// Quanta of one unit: the most that a cell holds.
+/// Quanta of one unit, the capacity of a cell.
 pub const QUANTA_PER_UNIT: f64 = 16_777_216.0;
-/// As [`QUANTA_PER_UNIT`].
+/// [`QUANTA_PER_UNIT`] as an integer.
 pub const CELL_MAX: u32 = 1 << 24;
 /// Thickness of one quantum on its cell, m.
 pub const QUANTUM_M: f64 = UNIT_M / QUANTA_PER_UNIT;
-/// Side of the cell by which travel is measured, m, whatever the painting's own.
+/// Side of the reference cell by which travel is measured, m, whatever the painting's own cells.
 pub const REFERENCE_CELL_M: f64 = 2.5e-4;
-/// Most paints of a painting.
+/// Greatest number of paints of a painting.
 pub const SLOTS: usize = 64;
 
 /// Volume of a quantum on cells of side `cell_m`, m³.
@@ -28,7 +27,7 @@ pub fn quantum_m3(cell_m: f64) -> f64 {
     QUANTUM_M * cell_m * cell_m
 }
 
-/// A number for each paint slot that is 0 by default; in a file without the zeros of the last slots.
+/// A number for each paint slot, 0 by default; files leave out the zeros of the last slots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BySlot<T>([T; SLOTS]);
 

@@ -1,4 +1,4 @@
-//! Dry layers that become wet paint again.
+//! Rewetting of dry layers.
 
 use std::sync::Arc;
 
@@ -11,17 +11,17 @@ use crate::tile::Tile;
 /// A tile whose newest layers are wet again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rewet {
-    /// The tile.
+    /// Resulting tile.
     pub tile: Tile,
-    /// Cells that could not hold all of it: what had no room is dry still.
+    /// Number of cells without room for all of it, where the rest is still dry.
     pub full_cells: usize,
 }
 
-/// Wet paint of a tile while more becomes wet.
+/// Wet paint of a tile during rewetting.
 struct Wet {
     planes: Vec<Option<Vec<f32>>>,
     room: Vec<u64>,
-    /// Cells in which the next layer is uppermost.
+    /// True for cells in which the next layer is uppermost.
     open: Vec<bool>,
     full_cells: usize,
 }
@@ -42,8 +42,8 @@ impl Wet {
         wet
     }
 
-    /// Takes a layer up, from the newest down, and returns the rest of it; `None` if it is unchanged. A cell without
-    /// room for all of it takes an even share of its paints, and nothing of the layers under it.
+    /// Rewets a layer, from the newest down, and returns the rest of it; `None` if it is unchanged. A cell without room
+    /// for all of it takes an even share of its paints, and nothing of the layers under it.
     fn take(&mut self, layer: &Planes) -> Option<Planes> {
         let mut rest: Vec<(usize, Vec<f32>)> = layer
             .iter()
@@ -82,8 +82,8 @@ impl Wet {
 }
 
 impl Tile {
-    /// The tile with its layers from number `least` on wet again in the cells that are `within`; none
-    /// where that changes nothing. Planes of the model's own stay where they are.
+    /// The tile with its layers from number `least` on rewetted in the cells that are `within`; `None` where that
+    /// changes nothing. The model's own planes stay where they are.
     #[must_use]
     pub fn rewet(&self, least: u32, within: &[bool]) -> Option<Rewet> {
         let mut links = Vec::new();
@@ -183,7 +183,7 @@ mod tests {
             .map(|(_, p)| p[9] as u64)
             .sum();
         let wet: u64 = one.tile.wet().iter().map(|(_, p)| p[9] as u64).sum();
-        // Each of two paints is cut to whole quanta.
+        // Each of two paints is truncated to whole quanta.
         assert!(wet <= 1 << 24 && wet + 2 > 1 << 24, "{wet}");
         assert_eq!(left + wet, (1 << 24) + 5 + 12);
         let both = tile.rewet(0, &everywhere).expect("layers");

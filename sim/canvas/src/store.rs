@@ -9,7 +9,7 @@ use crate::page::Pager;
 use crate::quantum::{Counts, SLOTS, add};
 use crate::tile::{Tile, TileId, Version};
 
-/// A rectangle of tiles: from the first, up to but not with the second corner.
+/// A half-open rectangle of tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TileRect {
     /// Lowest column and row.
@@ -57,7 +57,7 @@ pub struct TileStore {
 }
 
 impl TileStore {
-    /// An empty surface of `cells` across and up, of no painting.
+    /// An empty surface of `cells` across and up, without a painting.
     #[must_use]
     pub fn new(cells: [u32; 2]) -> Self {
         Self::paged(cells, &Arc::default())
@@ -83,13 +83,13 @@ impl TileStore {
         self.cells
     }
 
-    /// Tiles across and up; the last ones may reach over the edge.
+    /// Tiles across and up; the last ones may extend over the edge.
     #[must_use]
     pub fn grid(&self) -> [u32; 2] {
         self.grid
     }
 
-    /// The pages of its painting.
+    /// Pager of its painting.
     #[must_use]
     pub fn pager(&self) -> &Arc<Pager> {
         &self.pager
@@ -105,7 +105,7 @@ impl TileStore {
         &self.versions[self.place(id)]
     }
 
-    /// Puts a version in the place of another, which it returns.
+    /// Replaces a version, and returns the old one.
     pub fn replace(&mut self, id: TileId, version: Version) -> Version {
         let place = self.place(id);
         std::mem::replace(&mut self.versions[place], version)
@@ -147,7 +147,7 @@ impl TileStore {
         Some(rect)
     }
 
-    /// Leases the tiles of `rect` to a window; false where one of them is leased already.
+    /// Leases the tiles of `rect` to a window; false if one of them is leased already.
     pub fn lease(&mut self, rect: &TileRect) -> bool {
         if rect.tiles().any(|id| self.leased.contains(&id)) {
             return false;
@@ -156,7 +156,7 @@ impl TileStore {
         true
     }
 
-    /// Gives leased tiles back.
+    /// Returns leased tiles.
     pub fn release(&mut self, rect: &TileRect) {
         rect.tiles().for_each(|id| {
             self.leased.remove(&id);

@@ -11,9 +11,9 @@ use crate::quantum::{CELL_MAX, Counts};
 /// Column and row of a tile, row 0 at the bottom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TileId {
-    /// Row.
+    /// Row, 0 at the bottom.
     pub y: u32,
-    /// Column.
+    /// Column, 0 at the left.
     pub x: u32,
 }
 
@@ -25,7 +25,7 @@ pub struct Tile {
 }
 
 impl Tile {
-    /// A tile, of no painting, of wet planes over what has dried; planes without paint are left out.
+    /// A tile, without a painting, of wet planes over dried paint; planes without paint are left out.
     #[must_use]
     pub fn new(
         planes: impl Iterator<Item = (usize, Arc<[f32]>)>,
@@ -36,7 +36,7 @@ impl Tile {
         Self { wet, dry }
     }
 
-    /// A tile of a painting's pages, of planes that hold something: a later state of `before`, if that is known.
+    /// A tile of a painting's pages, with non-empty planes; `before` is its earlier state, if known.
     #[must_use]
     pub fn paged(
         pager: &Arc<Pager>,
@@ -61,7 +61,7 @@ impl Tile {
         self.wet.as_ref().map(Page::get).unwrap_or_default()
     }
 
-    /// The page of the wet planes, if anything is wet.
+    /// The page of the wet planes; `None` if nothing is wet.
     #[must_use]
     pub fn wet_page(&self) -> Option<&Page<Planes>> {
         self.wet.as_ref()
@@ -74,7 +74,7 @@ impl Tile {
         self.wet.iter().chain(dry)
     }
 
-    /// Dried paint.
+    /// Dried paint; `None` if nothing is dry.
     #[must_use]
     pub fn dry(&self) -> Option<&Arc<DryStack>> {
         self.dry.as_ref()
@@ -86,7 +86,7 @@ impl Tile {
         self.wet.is_none() && self.dry.is_none()
     }
 
-    /// True if both are made of the same pages.
+    /// True if both consist of the same pages.
     #[must_use]
     pub fn is(&self, other: &Self) -> bool {
         let wet = match (&self.wet, &other.wet) {
@@ -106,19 +106,19 @@ impl Tile {
         plane_counts(&self.wet())
     }
 
-    /// The tile with the lower `share` of its wet film dried as layer `number`, but for the cells of `stays`; `None` if
-    /// nothing dries. All of it dries by reference, unread.
+    /// The tile with the lower `share` of its wet film dried as layer `number`, except in the cells of `stays`; `None`
+    /// if nothing dries. A whole film dries by reference, unread.
     ///
     /// If the newest dry link is of this layer, and nothing was painted since it dried, it grows: film under film of
-    /// the same mixture has the colour of one film. Else there is a new link, for two mixtures one over the other do
-    /// not look like both mixed.
+    /// the same mixture has the colour of one film. Otherwise there is a new link, because stacked mixtures do not look
+    /// like their mixture.
     ///
-    /// Planes of the model's own dry with the whole film, by reference, and stay wet while a part of it does.
+    /// The model's own planes dry with the whole film, by reference, and stay wet while a part of it does.
     #[must_use]
     pub fn dried(&self, number: u32, share: f32, stays: &[usize]) -> Option<Self> {
         let page = self.wet.as_ref()?;
         let newest = self.dry.as_ref();
-        // Numbers of pages and links rise: a wet page older than the link is what that one left.
+        // Numbers of pages and links rise: a wet page older than the link is the remainder of its drying.
         let grows = newest.filter(|link| link.layer().number == number && page.id() < link.id());
         if grows.is_none() && newest.is_some_and(|link| link.depth() >= DRY_LAYERS_MOST) {
             return None;
@@ -173,7 +173,7 @@ impl Tile {
         Some(Self { wet, dry })
     }
 
-    /// The tile without its wet paint, but for the cells of `stays`; `None` if nothing goes.
+    /// The tile without its wet paint, except in the cells of `stays`; `None` if nothing is removed.
     #[must_use]
     pub fn scraped(&self, stays: &[usize]) -> Option<Self> {
         let page = self.wet.as_ref()?;
@@ -205,7 +205,7 @@ impl Tile {
     }
 }
 
-/// Counts of both; `None` if a cell would have more of a paint than is exact.
+/// Sum of counts; `None` if a cell would have more of a paint than is exact.
 fn sum(one: &Planes, other: &Planes) -> Option<Planes> {
     let mut planes = one.clone();
     for (slot, more) in other {
@@ -228,13 +228,13 @@ fn sum(one: &Planes, other: &Planes) -> Option<Planes> {
 /// A stored tile and the number of its version; no tile where nothing was ever painted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Version {
-    /// Grows with every change of any tile of the painting.
+    /// Incremented with every change of any tile of the painting.
     pub number: u64,
     /// The tile.
     pub tile: Option<Arc<Tile>>,
 }
 
-/// The lower share of a plane, in whole quanta; cells that stay have nothing of it.
+/// The lower share of a plane, in whole quanta; 0 in cells that stay.
 fn lower_part(plane: &[f32], share: f32, stays: &[usize]) -> Arc<[f32]> {
     let mut lower: Vec<f32> = if share >= 1.0 {
         plane.to_vec()

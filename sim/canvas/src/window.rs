@@ -30,7 +30,7 @@ impl Area {
         self.size.contains(&0)
     }
 
-    /// Its rows from the lowest on, in `count` parts.
+    /// Its rows from the lowest up, in `count` parts.
     pub fn parts(&self, count: usize) -> impl Iterator<Item = Self> + use<> {
         let area = *self;
         let row = move |part| area.size[1] * part / count;
@@ -46,7 +46,7 @@ impl Area {
         self.size[0] * self.size[1]
     }
 
-    /// Its rows as ranges of the planes of a window of this width.
+    /// Its rows as index ranges of planes with this width.
     pub fn rows(&self, width: usize) -> impl Iterator<Item = std::ops::Range<usize>> + use<> {
         let (from, size) = (self.from, self.size);
         (0..size[1]).map(move |y| {
@@ -56,7 +56,7 @@ impl Area {
     }
 }
 
-/// The planes of a rectangle of tiles, row after row from the bottom.
+/// Planes of a rectangle of tiles, row by row from the bottom.
 #[derive(Debug)]
 pub struct Window {
     rect: TileRect,
@@ -64,7 +64,7 @@ pub struct Window {
     height: usize,
     limit: [usize; 2],
     wet: [Option<Vec<f32>>; SLOTS],
-    /// Planes that the paint model keeps of its own, by their shape.
+    /// The paint model's own planes, by their shape.
     own: BTreeMap<OwnShape, Vec<u8>>,
     base: Vec<f32>,
     ride: Vec<f32>,
@@ -76,7 +76,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// Leases `rect` and copies its tiles; `None` if it is leased already. `relief` gives the heights that catch paint,
+    /// Leases `rect` and copies its tiles; `None` if one is leased already. `relief` has the heights that catch paint,
     /// m.
     pub fn open(store: &mut TileStore, rect: TileRect, relief: &Relief) -> Option<Self> {
         if !store.lease(&rect) {
@@ -137,7 +137,7 @@ impl Window {
         Some(window)
     }
 
-    /// Raises what catches paint by what has dried on it.
+    /// Raises the surface that catches paint by its dried paint.
     fn lay_dry(&mut self, cells_per_quantum: f32) {
         for (place, id) in self.rect.tiles().enumerate() {
             let Some(stack) = self.dry[place].clone() else {
@@ -153,13 +153,13 @@ impl Window {
         }
     }
 
-    /// Columns and rows, from the lower left corner, that are on the surface.
+    /// Columns and rows on the surface, from the lower left corner.
     #[must_use]
     pub fn limit(&self) -> [usize; 2] {
         self.limit
     }
 
-    /// Height of what catches paint, tooth and dry relief, cells; at most 0 where nothing is dry.
+    /// Height of the surface that catches paint, tooth and dry relief, cells; at most 0 where nothing is dry.
     #[must_use]
     pub fn base(&self) -> &[f32] {
         &self.base
@@ -171,19 +171,19 @@ impl Window {
         &self.ride
     }
 
-    /// Lowest ride anywhere on the surface, cells below 0: a step must not depend on what else its window holds.
+    /// Lowest ride anywhere on the surface, cells below 0, so that a step is independent of its window.
     #[must_use]
     pub fn ride_below(&self) -> f32 {
         self.ride_below
     }
 
-    /// The highest that brushes have met paint in the window, wet on dry, quanta.
+    /// The greatest height at which brushes have met paint in the window, wet on dry, quanta.
     #[must_use]
     pub fn top(&self) -> f32 {
         self.top
     }
 
-    /// Notes that paint stands so high, quanta.
+    /// Records a height of paint, quanta.
     pub fn note_top(&mut self, quanta: f32) {
         self.top = self.top.max(quanta);
     }
@@ -212,7 +212,7 @@ impl Window {
         self.rect.from.map(|tile| i64::from(tile) * TILE as i64)
     }
 
-    /// The plane of a slot, made if it is not there.
+    /// The plane of a slot, created if absent.
     pub fn plane_mut(&mut self, slot: usize) -> &mut Vec<f32> {
         let cells = self.width * self.height;
         self.wet[slot].get_or_insert_with(|| vec![0.0; cells])
@@ -224,19 +224,19 @@ impl Window {
         self.wet[slot].as_deref()
     }
 
-    /// Bytes of a plane that the paint model keeps of its own, cell after cell; zeros where it is new.
+    /// Bytes of one of the paint model's own planes, cell by cell; zeros if it is new.
     pub fn own_mut(&mut self, shape: OwnShape) -> &mut Vec<u8> {
         let bytes = self.width * self.height * shape.cell_bytes();
         self.own.entry(shape).or_insert_with(|| vec![0; bytes])
     }
 
-    /// Bytes of a plane that the paint model keeps of its own, if it is in use.
+    /// Bytes of one of the paint model's own planes, if it is in use.
     #[must_use]
     pub fn own(&self, shape: OwnShape) -> Option<&[u8]> {
         self.own.get(&shape).map(Vec::as_slice)
     }
 
-    /// The planes that the paint model keeps of its own, in order of their shapes.
+    /// The paint model's own planes, in order of their shapes.
     pub fn own_planes(&self) -> impl Iterator<Item = (OwnShape, &[u8])> {
         self.own.iter().map(|(shape, bytes)| (*shape, &bytes[..]))
     }
@@ -249,7 +249,7 @@ impl Window {
             .filter_map(|(slot, plane)| Some((slot, plane.as_deref()?)))
     }
 
-    /// The planes in use.
+    /// The planes in use, in order of slot, for writing.
     pub fn planes_mut(&mut self) -> impl Iterator<Item = (usize, &mut Vec<f32>)> {
         self.wet
             .iter_mut()
@@ -257,8 +257,7 @@ impl Window {
             .filter_map(|(slot, plane)| Some((slot, plane.as_mut()?)))
     }
 
-    /// Height of what catches paint and of a pressed bristle on it, as [`base`](Self::base) and [`ride`](Self::ride); and the planes in
-    /// use, in order of slot.
+    /// Heights of [`base`](Self::base) and [`ride`](Self::ride), and the planes in use, in order of slot.
     pub fn ground_and_planes_mut(
         &mut self,
     ) -> ([&[f32]; 2], impl Iterator<Item = (usize, &mut Vec<f32>)>) {
@@ -267,7 +266,7 @@ impl Window {
         ([&self.base[..], &self.ride[..]], planes)
     }
 
-    /// The planes in use, shared among at most `count` parts of nearly equal size.
+    /// The planes in use, split into at most `count` parts of nearly equal size.
     pub fn planes_in_parts(&mut self, count: usize) -> Vec<Vec<&mut Vec<f32>>> {
         let mut parts = Vec::new();
         for (place, plane) in self.wet.iter_mut().flatten().enumerate() {
@@ -285,7 +284,7 @@ impl Window {
         self.wet.iter().flatten().map(|plane| plane[cell]).sum()
     }
 
-    /// The cells `from`..`to` of the surface, as far as they are in the window and on the surface.
+    /// The cells `from`..`to` of the surface, clipped to the window and the surface.
     #[must_use]
     pub fn area(&self, from: [i64; 2], to: [i64; 2]) -> Area {
         let origin = self.origin();
@@ -321,13 +320,13 @@ impl Window {
         }
     }
 
-    /// True if the window may have any of a paint.
+    /// True if the window may contain any of a paint.
     #[must_use]
     pub fn has(&self, slot: usize) -> bool {
         self.wet[slot].is_some()
     }
 
-    /// Remembers that single cells change.
+    /// Marks single cells as changed.
     pub fn touch_cells(&mut self, cells: &[usize]) {
         let across = self.width / TILE;
         for cell in cells {
@@ -335,7 +334,7 @@ impl Window {
         }
     }
 
-    /// Remembers that cells `from`..`to` (of the window) change.
+    /// Marks the cells `from`..`to` of the window as changed.
     pub fn touch(&mut self, (from, to): ([usize; 2], [usize; 2])) {
         let across = self.width / TILE;
         let to = [to[0].min(self.width), to[1].min(self.height)];
@@ -346,8 +345,8 @@ impl Window {
         }
     }
 
-    /// Writes the changed tiles back as new versions, numbered from `next` on, and reports each
-    /// with the version that it replaced.
+    /// Writes the changed tiles back as new versions, numbered from `next` on, and reports each with the version that
+    /// it replaced.
     pub fn commit(
         &mut self,
         store: &mut TileStore,
@@ -397,7 +396,7 @@ impl Window {
         }
     }
 
-    /// Gives the tiles back; what was not committed is gone.
+    /// Returns the tiles; uncommitted changes are lost.
     pub fn close(self, store: &mut TileStore) {
         store.release(&self.rect);
     }

@@ -6,24 +6,23 @@ use maulstick_optics::km::over_with_slopes;
 
 use crate::palette::Palette;
 
-/// Colour of a layer over what lies under it in a cell, as a function of the shares of its paints.
+/// Colour of a layer over its ground in a cell, as a function of the shares of its paints.
 pub(crate) trait CellColour {
-    /// CIELAB, gloss included; `slopes` become its slopes by each share.
+    /// CIELAB, gloss included; `slopes` receives its derivatives by each share.
     fn lab(&self, shares: &[f64], slopes: &mut [[f64; 3]]) -> [f64; 3];
 }
 
-/// CIELAB of a colour; turns slopes of XYZ into those of CIELAB.
+/// CIELAB of a colour; converts slopes of XYZ into those of CIELAB.
 fn lab_with_slopes(palette: &Palette<'_>, xyz: [f64; 3], slopes: &mut [[f64; 3]]) -> [f64; 3] {
     const EDGE: f64 = 216.0 / 24_389.0;
     const LINE: f64 = 24_389.0 / 27.0 / 116.0;
     let curve = |i: usize| {
         let t = xyz[i] / palette.white[i];
-        let (value, slope) = match t > EDGE {
-            true => {
-                let root = powf(t, 1.0 / 3.0);
-                (root, root / (3.0 * t))
-            }
-            false => (LINE * t + 16.0 / 116.0, LINE),
+        let (value, slope) = if t > EDGE {
+            let root = powf(t, 1.0 / 3.0);
+            (root, root / (3.0 * t))
+        } else {
+            (LINE * t + 16.0 / 116.0, LINE)
         };
         (value, slope / palette.white[i])
     };
@@ -38,7 +37,7 @@ fn lab_with_slopes(palette: &Palette<'_>, xyz: [f64; 3], slopes: &mut [[f64; 3]]
 /// A film of a given thickness.
 pub(crate) struct FilmCell<'a> {
     pub(crate) palette: &'a Palette<'a>,
-    /// Internal reflectance of what lies under it, a value a wavelength.
+    /// Internal reflectance of its ground, a value a wavelength.
     pub(crate) under: &'a [f64],
     /// Thickness of its paints without the thinner, times the opacity of its layer, m.
     pub(crate) thickness_m: f64,
@@ -61,7 +60,7 @@ impl CellColour for FilmCell<'_> {
             let [r, by_k, by_s] = over_with_slopes(kd, sd, *under);
             let through = 1.0 / (1.0 - surface.k2 * r);
             let leaving = open * r * through;
-            // Slope of what leaves by r, of r by the thicknesses.
+            // Slope of the emerging light by r, of r by the thicknesses.
             let steep = open * through * through * self.thickness_m;
             let (by_k, by_s) = (steep * by_k, steep * by_s);
             for (sum, weight) in xyz.iter_mut().zip(weight) {
@@ -83,9 +82,9 @@ pub(crate) struct VolumeCell<'a> {
     pub(crate) palette: &'a Palette<'a>,
     /// Encoded colours of its paints.
     pub(crate) encoded: &'a [[f64; 3]],
-    /// Encoded colour of what lies under it.
+    /// Encoded colour of its ground.
     pub(crate) under: [f64; 3],
-    /// Share of that which it replaces.
+    /// Opacity of the layer.
     pub(crate) hides: f64,
 }
 
@@ -102,9 +101,12 @@ impl CellColour for VolumeCell<'_> {
             encoded.clamp(0.0, 1.0)
         };
         let encoded = [seen(0), seen(1), seen(2)];
-        let steep = encoded.map(|value| match value <= 0.040_45 {
-            true => 1.0 / 12.92,
-            false => 2.4 / 1.055 * powf((value + 0.055) / 1.055, 1.4),
+        let steep = encoded.map(|value| {
+            if value <= 0.040_45 {
+                1.0 / 12.92
+            } else {
+                2.4 / 1.055 * powf((value + 0.055) / 1.055, 1.4)
+            }
         });
         let to_xyz = self.palette.to_xyz();
         for (slope, own) in slopes.iter_mut().zip(self.encoded) {

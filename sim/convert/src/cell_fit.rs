@@ -1,4 +1,4 @@
-//! The paints of one layer of a cell after another, each fitted from the one before it.
+//! Fits of a cell's layers, each starting from the cell before.
 
 use std::sync::Arc;
 
@@ -11,30 +11,30 @@ use crate::masstones::Masstones;
 use crate::palette::Palette;
 use crate::shown::{Kind, Paints, Shown};
 
-/// Distance, ΔE₀₀, from which a fit is tried from elsewhere, too.
-const FAR: f64 = 1.0;
+/// Distance, ΔE₀₀, from which a fit is also tried from another start.
+const RETRY_DELTA_E: f64 = 1.0;
 
-/// What a fit depends on: alike for many neighbours.
+/// Inputs of a fit, equal for many neighbours.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Asked {
     /// Quanta by paint of the palette, and their sum.
     counts: Vec<f32>,
     all: u64,
-    /// Colour wanted, CIELAB.
+    /// Target colour, CIELAB.
     colour: [f64; 3],
-    /// Reflectances or encoded channels of what lies under it.
+    /// Reflectances or encoded channels of the ground.
     under: Vec<f64>,
-    /// Opacity of the layer, and the least share of what is below that its volume replaces.
+    /// Opacity of the layer, and the least share of the ground that its volume replaces.
     opacity: f64,
     hides: f64,
 }
 
-/// Paints of a layer of a cell.
+/// Fitted paints of a layer of a cell.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fitted<'a> {
     /// Quanta by paint of the palette.
     pub(crate) counts: &'a [u64],
-    /// Quanta over a dry layer with which it hides as much as it is to; 0 where that needs none.
+    /// Wet quanta noted over a dry layer that give it the required opacity; 0 if none are needed.
     pub(crate) over: f32,
 }
 
@@ -50,7 +50,7 @@ pub(crate) struct Target<'a> {
 pub(crate) struct CellFit<'a> {
     target: &'a Target<'a>,
     fitter: Fitter,
-    /// As `fitter`, with what lies below as one more paint.
+    /// Fitter with the ground as one more paint.
     blender: Fitter,
     asked: Asked,
     last: Asked,
@@ -80,7 +80,7 @@ impl<'a> CellFit<'a> {
         }
     }
 
-    /// Takes in the paint of a cell, a plane for each of the palette; returns its quanta.
+    /// Loads the paint of a cell, a plane for each of the palette; returns its quanta.
     pub(crate) fn take(&mut self, planes: &[Option<&Arc<[f32]>>], cell: usize) -> u64 {
         let count = |plane: &Option<&Arc<[f32]>>| plane.map_or(0.0, |plane| plane[cell]);
         let asked = &mut self.asked;
@@ -90,7 +90,7 @@ impl<'a> CellFit<'a> {
         asked.all
     }
 
-    /// The paints with which it has the colour that is `wanted`, over what lies `under` it.
+    /// The paints that give the colour `wanted` over the ground `under`.
     pub(crate) fn fitted(
         &mut self,
         wanted: &Shown,
@@ -147,9 +147,10 @@ impl<'a> CellFit<'a> {
                     Kind::Wet => asked.hides,
                     Kind::Dry { .. } => asked.opacity.min(1.0),
                 };
-                let hides = match asked.hides < most {
-                    true => self.blended(&asked, (&volumes.encoded, under), most),
-                    false => asked.hides,
+                let hides = if asked.hides < most {
+                    self.blended(&asked, (&volumes.encoded, under), most)
+                } else {
+                    asked.hides
                 };
                 let volume = VolumeCell {
                     palette,
@@ -169,8 +170,7 @@ impl<'a> CellFit<'a> {
         self.asked = asked;
     }
 
-    /// Share of what is below that a dry layer is to replace, between what its volume hides and `most`: what lies below
-    /// counts as one of its paints.
+    /// Opacity of a dry layer, between that of its volume and `most`, with the ground as one of its paints.
     fn blended(
         &mut self,
         asked: &Asked,
@@ -196,7 +196,7 @@ impl<'a> CellFit<'a> {
         (1.0 - left).clamp(asked.hides, most)
     }
 
-    /// Finds shares, from those of the cell before and from the own ones; where both are far, from a table.
+    /// Fits shares, starting from those of the cell before and from the own ones; where both are far, from a table.
     fn shares(&mut self, colour: &impl CellColour, wanted: [f64; 3]) {
         let wanted = Wanted {
             colour: wanted,
@@ -207,7 +207,7 @@ impl<'a> CellFit<'a> {
             self.start.clone_from(&self.found.shares);
             self.fitter
                 .descend(colour, wanted, &self.start, &mut self.found);
-            if self.found.delta_e <= FAR {
+            if self.found.delta_e <= RETRY_DELTA_E {
                 return;
             }
         }

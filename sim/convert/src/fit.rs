@@ -1,42 +1,44 @@
-//! Nearest shares of paints to a colour: Gauss-Newton steps on the simplex, in the metric of ΔE₀₀ around that colour.
+//! Shares of paints nearest to a colour: Gauss-Newton steps on the simplex, in the metric of ΔE₀₀ around that colour.
 //!
-//! Among mixtures that are equally near the one most like the own is taken: it costs a little to leave it, and a little
-//! more to use paints that it does not have.
+//! Among equally near mixtures the one closest to the cell's own is chosen: leaving it has a small cost, and paints
+//! that it lacks a slightly larger one.
 
 use maulstick_optics::colour::{Matrix, apply, delta_e_2000, delta_e_2000_near};
 
 use crate::cell::CellColour;
-use crate::program::{Active, NEAR, Program};
+use crate::program::{Active, OWN_SHARES_WEIGHT, Program};
 
-/// Cost of the whole in paints that the own mixture does not have, ΔE₀₀²/2.
+/// Cost of a mixture entirely of paints that the cell's own lacks, ΔE₀₀²/2.
 const FOREIGN: f64 = 0.05;
-/// Most steps.
+/// Greatest number of steps.
 const STEPS: usize = 16;
-/// Gain of a step, ΔE₀₀²/2, below which it is the last.
-const ENOUGH: f64 = 1e-3;
-/// Factor on a step that went too far, and how often it is tried shorter.
-const SHORTER: (f64, usize) = (0.35, 5);
+/// Gain of the last step, ΔE₀₀²/2.
+const LAST_GAIN: f64 = 1e-3;
+/// Factor on a step that overshoots.
+const SHORTENING: f64 = 0.35;
+/// Greatest number of attempts of a step.
+const ATTEMPTS: usize = 5;
 
-/// What a fit is to come near to.
+/// Target of a fit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wanted<'a> {
-    /// The colour, CIELAB.
+    /// Target colour, CIELAB.
     pub(crate) colour: [f64; 3],
-    /// The own shares.
+    /// The cell's own shares.
     pub(crate) own: &'a [f64],
 }
 
-/// Shares, and how good they are.
+/// Quality of fitted shares.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Found {
     pub(crate) shares: Vec<f64>,
-    /// Distance from the colour wanted, ΔE₀₀.
+    /// Distance from the target colour, ΔE₀₀.
     pub(crate) delta_e: f64,
-    /// What is minimised.
+    /// Minimised energy.
     pub(crate) energy: f64,
 }
 
-/// A fit, with its working memory.
+/// A fit, with its buffers.
 #[derive(Debug, Default)]
 pub(crate) struct Fitter {
     slopes: Vec<[f64; 3]>,
@@ -48,7 +50,7 @@ pub(crate) struct Fitter {
     active: Active,
 }
 
-/// Terms that do not change during a fit.
+/// Constant terms of a fit.
 struct Terms<'a> {
     wanted: Wanted<'a>,
     metric: Matrix,
@@ -64,7 +66,7 @@ impl Terms<'_> {
         let [l, c, h] = self.residual(lab);
         let mut energy = l * l + c * c + h * h;
         for (share, own) in shares.iter().zip(self.wanted.own) {
-            energy += NEAR * (share - own) * (share - own);
+            energy += OWN_SHARES_WEIGHT * (share - own) * (share - own);
             if *own <= 0.0 {
                 energy += 2.0 * FOREIGN * share;
             }
@@ -74,7 +76,7 @@ impl Terms<'_> {
 }
 
 impl Fitter {
-    /// A fit of so many paints.
+    /// A fit of `paints` paints.
     pub(crate) fn new(paints: usize) -> Self {
         let slopes = vec![[0.0; 3]; paints];
         Self {
@@ -88,7 +90,7 @@ impl Fitter {
         }
     }
 
-    /// The nearest shares that are found from a start; `found` gets them.
+    /// Descends from a start to the nearest shares, written to `found`.
     pub(crate) fn descend(
         &mut self,
         colour: &impl CellColour,
@@ -125,15 +127,15 @@ impl Fitter {
             found.energy = energy;
             lab = there;
             std::mem::swap(&mut self.slopes, &mut self.next_slopes);
-            if gained < ENOUGH {
+            if gained < LAST_GAIN {
                 break;
             }
         }
         found.delta_e = delta_e_2000(lab, wanted.colour);
     }
 
-    /// Goes towards the end of a step, not so far where that is too far; colour and energy there, `None` where nothing on
-    /// the way is lower.
+    /// Moves toward the end of a step, less far where it overshoots; returns colour and energy there, `None` where no
+    /// attempt is lower.
     fn towards(
         &mut self,
         colour: &impl CellColour,
@@ -141,7 +143,7 @@ impl Fitter {
         from: &Found,
     ) -> Option<([f64; 3], f64)> {
         let mut part = 1.0;
-        for _ in 0..SHORTER.1 {
+        for _ in 0..ATTEMPTS {
             for (place, tried) in self.tried.iter_mut().enumerate() {
                 let start = from.shares[place];
                 *tried = start + part * (self.ends[place] - start);
@@ -151,13 +153,14 @@ impl Fitter {
             if energy < from.energy {
                 return Some((lab, energy));
             }
-            part *= SHORTER.0;
+            part *= SHORTENING;
         }
         None
     }
 }
 
-/// Whole counts of the sum `all` in the ratio of shares: each rounded down, what is left to the largest remainders.
+/// Whole counts of the sum `all` in the ratio of shares: each rounded down, the remainder going to the largest
+/// fractions.
 pub(crate) fn whole(shares: &[f64], all: u64, counts: &mut Vec<u64>) {
     counts.clear();
     let sum: f64 = shares.iter().sum();

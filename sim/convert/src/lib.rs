@@ -1,23 +1,23 @@
 //! Conversion between paint models that show the same counts in different colours.
 //!
-//! Every model counts its paint by slot, so a conversion moves no volume: each cell keeps the quanta of each of its layers,
-//! and its thinner. Only the colours differ. Kubelka-Munk films mix yellow and blue to green, volumes to grey
-//! ([`Colouring`](maulstick_appearance::colouring::Colouring)); a thick dark glaze is nearly black as a film and has its
-//! tint as a volume. So the paints of each layer are chosen anew, from the bottom up: those of the same volume that are
-//! nearest in ΔE₀₀ to what was seen of the layer over all below it.
+//! Every model counts its paint by slot, so a conversion moves no volume: each cell keeps the quanta of each of its
+//! layers, and its thinner. Only the colours differ. Kubelka-Munk films mix yellow and blue to green, volumes to grey
+//! ([`Colouring`](maulstick_appearance::colouring::Colouring)); a thick dark glaze is nearly black as a film and has
+//! its tint as a volume. So the paints of each layer are fitted, from the bottom up: those of the same volume that are
+//! nearest in ΔE₀₀ to the old appearance of the layer over all below it.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | `palette` | the paints that a fit may use, as numbers |
-//! | `shown` | layers of a tile laid over each other in either colouring |
+//! | `shown` | stacked layers of a tile in either colouring |
 //! | `cell` | colour of a layer of one cell, and its slopes by the shares of the paints |
-//! | `cell_fit` | the paints of one layer of a cell after another |
+//! | `cell_fit` | fits of a cell's layers |
 //! | `fit` | nearest shares: Gauss-Newton steps on the simplex |
-//! | `program` | the quadratic programme of a step |
-//! | `masstones` | mixtures from which a fit begins that no neighbour helps |
+//! | `program` | the quadratic program of a step |
+//! | `masstones` | starting mixtures of a fit without a near neighbour |
 //! | [`Converter`] | the paint of a tile |
 //!
-//! A tile of yellow over blue paint, seen as films, in the colours of volumes:
+//! A tile of yellow over blue paint, converted from films to volumes:
 //!
 //! ```
 //! use maulstick_appearance::Appearance;
@@ -54,10 +54,10 @@
 //! # The fit
 //!
 //! Gauss-Newton steps on the simplex, from the shares of the cell before, under a small cost for leaving the layer's
-//! own mixture; masstones and a table of mixtures help where no neighbour does. A step is a quadratic programme with
-//! three residuals, so a set of free paints has four unknowns. Dry volumes also get how much they hide, as a film that
-//! would have stayed wet over them. The model of a surface belongs to its materials, so steps, versions and undo
-//! include a conversion. Models whose colourings are equal keep their counts as they are.
+//! own mixture, or from masstones and a table of mixtures. A step is a quadratic program with three residuals, so a set
+//! of free paints has four unknowns. For dry volumes the opacity is fitted too, as a film that would have stayed wet
+//! over them. The model of a surface belongs to its materials, so steps, versions and undo include a conversion. Models
+//! whose colourings are equal keep their counts as they are.
 
 mod cell;
 mod cell_fit;
@@ -68,4 +68,4 @@ mod program;
 mod shown;
 mod tile;
 
-pub use tile::{Converted, Converter, Distance, FAR, Farthest, TileGround};
+pub use tile::{Converted, Converter, Distance, Farthest, OBVIOUS_DELTA_E, TileGround};

@@ -1,4 +1,4 @@
-//! Mixtures from which a fit begins that no neighbour helps: all pairs and triples of the paints, opaque.
+//! Starting mixtures of a fit without a near neighbour: all pairs and triples of the paints, opaque.
 
 use maulstick_num::exp;
 use maulstick_optics::colour::{apply, delta_e_2000_near};
@@ -6,11 +6,11 @@ use maulstick_optics::colour::{apply, delta_e_2000_near};
 use crate::cell::{CellColour as _, FilmCell};
 use crate::palette::Palette;
 
-/// Logarithms of the ratios of two paints: of a phthalo a hundredth does what of an ochre the half does.
+/// Logarithms of the ratios of two paints: a hundredth of a phthalo equals half of an ochre.
 const RATIOS: [f64; 7] = [-5.5, -3.5, -1.8, 0.0, 1.8, 3.5, 5.5];
-/// As [`RATIOS`], of the second and third of three.
+/// Logarithms of the ratios of the second and third of three paints.
 const COARSE: [f64; 3] = [-3.0, 0.0, 3.0];
-/// Most paints of which triples are listed.
+/// Greatest number of paints with listed triples.
 const MOST_IN_TRIPLES: usize = 16;
 /// Thickness of an opaque film, m.
 const OPAQUE_M: f64 = 0.01;
@@ -18,9 +18,9 @@ const OPAQUE_M: f64 = 0.01;
 /// Mixtures and their colours.
 #[derive(Debug, Default)]
 pub(crate) struct Masstones {
-    /// CIELAB, and where the shares of the mixture begin among the parts.
+    /// CIELAB, and the offset of the mixture's shares among the parts.
     colours: Vec<([f64; 3], usize)>,
-    /// Paints and their shares, one mixture after the other.
+    /// Paints and their shares, mixture by mixture.
     parts: Vec<(usize, f64)>,
 }
 
@@ -65,7 +65,7 @@ impl Masstones {
         table
     }
 
-    /// Shares of the mixture that is nearest to a colour, CIELAB.
+    /// Shares of the mixture nearest to a colour, CIELAB.
     pub(crate) fn nearest(&self, colour: [f64; 3], shares: &mut [f64]) {
         let metric = delta_e_2000_near(colour);
         let mut best = (0, f64::INFINITY);

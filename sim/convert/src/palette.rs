@@ -1,4 +1,4 @@
-//! The paints that a fit may use, as numbers.
+//! Paints available to a fit, as numbers.
 
 use maulstick_appearance::Appearance;
 use maulstick_optics::colour::{Matrix, apply, inverse, lab};
@@ -7,21 +7,21 @@ use maulstick_optics::colour::{Matrix, apply, inverse, lab};
 #[derive(Debug)]
 pub(crate) struct Palette<'a> {
     pub(crate) look: &'a Appearance,
-    /// Their slots, rising; the thinner is none of them.
+    /// Their slots, ascending, without the thinner.
     pub(crate) slots: Vec<usize>,
     /// K and S per metre, a row of paints for each wavelength.
     pub(crate) ks: Vec<Vec<[f64; 2]>>,
     /// Weights of the wavelengths in X, Y and Z.
     pub(crate) weights: Vec<[f64; 3]>,
-    /// XYZ of the perfect diffuser.
+    /// White point: XYZ of the perfect diffuser.
     pub(crate) white: [f64; 3],
     to_xyz: Matrix,
-    /// XYZ of the surface's own reflection, which light adds to every colour.
+    /// XYZ of the surface's own reflection, which is added to every colour.
     pub(crate) gloss: [f64; 3],
 }
 
 impl<'a> Palette<'a> {
-    /// The paints of a painting.
+    /// Paints of a painting.
     pub(crate) fn new(look: &'a Appearance) -> Self {
         let studio = &look.studio;
         let slots: Vec<usize> = (0..studio.slots())
@@ -49,7 +49,7 @@ impl<'a> Palette<'a> {
         [0, 1, 2].map(|i| xyz[i] + self.gloss[i])
     }
 
-    /// XYZ, with the gloss, of an internal reflectance a wavelength.
+    /// XYZ, with the gloss, of internal reflectances by wavelength.
     pub(crate) fn xyz_of(&self, reflectances: impl Iterator<Item = f64>) -> [f64; 3] {
         let surface = self.look.studio.surface();
         let mut xyz = self.gloss;
@@ -67,7 +67,7 @@ impl<'a> Palette<'a> {
         lab(xyz, self.white)
     }
 
-    /// XYZ by linear channels.
+    /// Matrix from linear channels to XYZ.
     pub(crate) fn to_xyz(&self) -> &Matrix {
         &self.to_xyz
     }

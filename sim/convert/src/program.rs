@@ -1,19 +1,19 @@
-//! The quadratic programme of a Gauss-Newton step over shares.
+//! The quadratic program of a Gauss-Newton step over shares.
 //!
-//! Minimise ½|e + Σ jₛ·(zₛ − yₛ)|² + ½λ|z − o|² + Σ cₛ·zₛ over z ≥ 0, Σz = 1, by a primal active-set method (Nocedal and
-//! Wright 2006, § 16.5). Where a set of shares is free, λ(zₛ − oₛ) = −(jₛ·e' + cₛ + ν) with the residual e' at the minimum
-//! and the multiplier ν of the sum, so that four unknowns are to be solved for, however many paints there are.
+//! Minimise ½|e + Σ jₛ·(zₛ − yₛ)|² + ½λ|z − o|² + Σ cₛ·zₛ over z ≥ 0, Σz = 1, by a primal active-set method (Nocedal
+//! and Wright 2006, § 16.5). Where a set of shares is free, λ(zₛ − oₛ) = −(jₛ·e' + cₛ + ν) with the residual e' at the
+//! minimum and the multiplier ν of the sum, so there are four unknowns for any number of paints.
 
 /// Weight λ of the distance from the own shares.
-pub(crate) const NEAR: f64 = 0.02;
-/// Changes of the free set by paint, at most.
+pub(crate) const OWN_SHARES_WEIGHT: f64 = 0.02;
+/// Greatest number of changes of the free set per paint.
 const CHANGES: usize = 4;
-/// Slope of what is minimised along a share below which it stays 0.
-const LEAST: f64 = 1e-6;
+/// Slope of the objective along a share below which it stays 0.
+const SLOPE_TOLERANCE: f64 = 1e-6;
 
-/// What a step is to minimise.
+/// Objective of a step.
 pub(crate) struct Program<'a> {
-    /// Weighted difference from the colour wanted, e.
+    /// Weighted difference from the target colour, e.
     pub(crate) residual: [f64; 3],
     /// Its slopes by the shares, j.
     pub(crate) slopes: &'a [[f64; 3]],
@@ -23,7 +23,7 @@ pub(crate) struct Program<'a> {
     pub(crate) costs: &'a [f64],
 }
 
-/// Working memory of a programme.
+/// Buffers of a program.
 #[derive(Debug, Default)]
 pub(crate) struct Active {
     is_free: Vec<bool>,
@@ -35,7 +35,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl Program<'_> {
-    /// Moves shares from where they are, y, to the minimum.
+    /// Moves shares from their current values, y, to the minimum.
     pub(crate) fn minimise(&self, shares: &mut [f64], active: &mut Active) {
         let mut bare = self.residual;
         for (slope, share) in self.slopes.iter().zip(&*shares) {
@@ -50,7 +50,7 @@ impl Program<'_> {
             let [a, b, c, sum] = self.solve(&active.is_free, bare);
             let slope = |paint: usize| {
                 dot(self.slopes[paint], [a, b, c]) + self.costs[paint] + sum
-                    - NEAR * self.own[paint]
+                    - OWN_SHARES_WEIGHT * self.own[paint]
             };
             let mut first = (1.0, None);
             for paint in 0..shares.len() {
@@ -58,7 +58,7 @@ impl Program<'_> {
                 if !active.is_free[paint] {
                     continue;
                 }
-                let end = -slope(paint) / NEAR;
+                let end = -slope(paint) / OWN_SHARES_WEIGHT;
                 active.ends[paint] = end;
                 if end < 0.0 {
                     let part = shares[paint] / (shares[paint] - end);
@@ -79,11 +79,11 @@ impl Program<'_> {
             let lowest = held.map(|paint| (paint, slope(paint)));
             let lowest = lowest.min_by(|one, other| one.1.total_cmp(&other.1));
             match lowest {
-                Some((paint, slope)) if slope < -LEAST => active.is_free[paint] = true,
+                Some((paint, slope)) if slope < -SLOPE_TOLERANCE => active.is_free[paint] = true,
                 _ => break,
             }
         }
-        // What rounding leaves of the sum.
+        // Rounding error of the sum.
         let sum: f64 = shares.iter().map(|share| share.max(0.0)).sum();
         for share in shares {
             *share = share.max(0.0) / sum;
@@ -94,14 +94,19 @@ impl Program<'_> {
     /// paint.
     fn solve(&self, is_free: &[bool], bare: [f64; 3]) -> [f64; 4] {
         let mut matrix = [[0.0; 4]; 4];
-        let mut right = [NEAR * bare[0], NEAR * bare[1], NEAR * bare[2], -NEAR];
+        let mut right = [
+            OWN_SHARES_WEIGHT * bare[0],
+            OWN_SHARES_WEIGHT * bare[1],
+            OWN_SHARES_WEIGHT * bare[2],
+            -OWN_SHARES_WEIGHT,
+        ];
         for (i, row) in matrix.iter_mut().enumerate().take(3) {
-            row[i] = NEAR;
+            row[i] = OWN_SHARES_WEIGHT;
         }
         for (paint, [a, b, c]) in self.slopes.iter().enumerate() {
             if is_free[paint] {
                 let row = [*a, *b, *c, 1.0];
-                let pull = NEAR * self.own[paint] - self.costs[paint];
+                let pull = OWN_SHARES_WEIGHT * self.own[paint] - self.costs[paint];
                 for i in 0..4 {
                     for j in 0..4 {
                         matrix[i][j] += row[i] * row[j];
@@ -148,13 +153,13 @@ mod tests {
                 *sum += slope * (at[paint] - from[paint]);
             }
             let off = at[paint] - program.own[paint];
-            rest += 0.5 * NEAR * off * off + program.costs[paint] * at[paint];
+            rest += 0.5 * OWN_SHARES_WEIGHT * off * off + program.costs[paint] * at[paint];
         }
         0.5 * dot(residual, residual) + rest
     }
 
     proptest! {
-        /// Of a convex function over the simplex a point is the minimum where no exchange between two paints gains anything.
+        /// A point minimises a convex function over the simplex where no exchange between two paints gains anything.
         #[test]
         fn no_exchange_from_the_minimum_gains(
             slopes in prop::collection::vec(prop::array::uniform3(-60.0..60.0f64), 5),

@@ -1,4 +1,4 @@
-//! Layers of a tile laid over each other, in either colouring.
+//! Stacked layers of a tile, in either colouring.
 
 use maulstick_appearance::colouring::{Colouring, EncodedTile, VolumeColours};
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
@@ -9,22 +9,21 @@ use maulstick_optics::{FilmPlanes, Under};
 use crate::cell::encoded;
 use crate::palette::Palette;
 
-/// Layer of a tile, as it lies over what is below.
+/// Kind of a layer.
 #[derive(Clone, Debug)]
 pub(crate) enum Kind {
-    /// Wet paint.
     Wet,
     /// Dried paint.
     Dry {
         /// Factor on its optical thickness.
         opacity: f32,
-        /// Quanta that stayed wet over it when it dried, a cell, where that is known.
+        /// Wet quanta over it when it dried, by cell, if known.
         over: Option<Vec<f32>>,
     },
 }
 
 impl Kind {
-    /// Factor on the optical thickness of a film.
+    /// Factor on the optical thickness of its film.
     pub(crate) fn opacity(&self) -> f32 {
         match self {
             Self::Wet => 1.0,
@@ -32,7 +31,7 @@ impl Kind {
         }
     }
 
-    /// Share that so many quanta replace as a volume in a cell.
+    /// Opacity of a cell's quanta as a volume.
     pub(crate) fn hides(&self, volumes: &VolumeColours, cell: usize, quanta: f32) -> f32 {
         match self {
             Self::Wet => (volumes.hides)(quanta),
@@ -44,23 +43,23 @@ impl Kind {
     }
 }
 
-/// Colours of the paints by one of the colourings.
+/// Colours of the paints in one of the colourings.
 #[derive(Debug)]
 pub(crate) enum Paints {
-    /// Those of the optics.
+    /// Colours by the optics of films.
     Films,
-    /// Those of a model whose paint mixes by volume.
+    /// Colours of a model whose paint mixes by volume.
     Volumes(VolumePaints),
 }
 
 /// Encoded colours of paints that mix by volume.
 #[derive(Debug)]
 pub(crate) struct VolumePaints {
-    /// Their model's.
+    /// Colours by slot; `None` for the thinner.
     pub(crate) of: &'static VolumeColours,
     /// By slot; none of the thinner.
     by_slot: Vec<Option<[f32; 3]>>,
-    /// In the order of the palette.
+    /// Colours in the order of the palette.
     pub(crate) encoded: Vec<[f64; 3]>,
 }
 
@@ -79,7 +78,7 @@ impl Paints {
         })
     }
 
-    /// Wet quanta that are noted over dried planes.
+    /// Wet quanta noted over dried planes.
     pub(crate) fn wet_over(&self, dried: &Planes) -> Option<Vec<f32>> {
         match self {
             Self::Films => None,
@@ -88,7 +87,7 @@ impl Paints {
     }
 }
 
-/// What is seen of a tile so far.
+/// Appearance of a tile's layers so far.
 #[derive(Clone, Debug)]
 pub(crate) enum Shown {
     /// Internal reflectances, a plane a wavelength.
@@ -120,9 +119,12 @@ impl Shown {
                 };
                 palette.look.studio.shade(&bare, [red, green, blue]);
                 let even = matches!(ground, Under::Even(_));
-                for value in rgb.iter_mut().flat_map(|plane| match even {
-                    true => plane[..1].iter_mut(),
-                    false => plane.iter_mut(),
+                for value in rgb.iter_mut().flat_map(|plane| {
+                    if even {
+                        plane[..1].iter_mut()
+                    } else {
+                        plane.iter_mut()
+                    }
                 }) {
                     *value = encoded(*value);
                 }
@@ -137,7 +139,7 @@ impl Shown {
         }
     }
 
-    /// Lays a layer over it.
+    /// Composites a layer over it.
     pub(crate) fn lay(
         &mut self,
         paints: &Paints,

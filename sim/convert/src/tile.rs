@@ -16,36 +16,36 @@ use crate::masstones::Masstones;
 use crate::palette::Palette;
 use crate::shown::{Kind, Paints, Shown};
 
-/// Ground of a tile, and its cells that are left alone.
+/// Ground of a tile, and its cells that are left unchanged.
 #[derive(Clone, Copy, Debug)]
 pub struct TileGround<'a> {
     /// Internal reflectances.
     pub under: Under<'a>,
-    /// Cells whose paint stays as it is: those of wells.
+    /// Cells whose paint stays unchanged: those of wells.
     pub stays: &'a [usize],
 }
 
-/// Distances between what is seen of cells before and after, ΔE₀₀.
+/// Distances between the appearance of cells before and after, ΔE₀₀.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distance {
     /// Sum over the cells.
     pub sum: f64,
-    /// The farthest.
+    /// Greatest distance.
     pub worst: f64,
-    /// The cell that is the farthest; `None` of no cell.
+    /// Cell with the greatest distance; `None` without cells.
     pub farthest: Option<Farthest>,
     /// Number of cells.
     pub cells: u64,
-    /// Number of those beyond [`FAR`].
+    /// Number of cells beyond [`OBVIOUS_DELTA_E`].
     pub far: u64,
 }
 
-/// A distance that everybody sees, ΔE₀₀.
-pub const FAR: f64 = 5.0;
-/// Films below this one may hide otherwise in another model, whatever is mixed, m.
+/// An obvious difference of colour, ΔE₀₀.
+pub const OBVIOUS_DELTA_E: f64 = 5.0;
+/// Thickness below which the opacity of a film may change in another model, for any mixture, m.
 const THIN_M: f64 = 40e-6;
 
-/// A cell whose colour is not met.
+/// A cell whose colour is not reproduced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Farthest {
     /// Its column and row, in the tile or the surface, from the lower left corner.
@@ -55,7 +55,7 @@ pub struct Farthest {
 }
 
 impl Farthest {
-    /// True where the film is so thin that it need not hide as it did.
+    /// True where the film is so thin that its opacity may change.
     #[must_use]
     pub fn is_thin(&self) -> bool {
         self.film_m < THIN_M
@@ -63,7 +63,7 @@ impl Farthest {
 }
 
 impl Distance {
-    /// Takes another one in.
+    /// Adds another distance.
     pub fn add(&mut self, other: &Self) {
         self.sum += other.sum;
         if other.worst > self.worst || self.farthest.is_none() {
@@ -74,7 +74,7 @@ impl Distance {
         self.far += other.far;
     }
 
-    /// The same of a tile whose first cell is this one of a surface.
+    /// The distance of a tile whose first cell is at this cell of a surface.
     #[must_use]
     pub fn moved(mut self, [x, y]: [usize; 2]) -> Self {
         if let Some(Farthest { cell, .. }) = &mut self.farthest {
@@ -83,7 +83,7 @@ impl Distance {
         self
     }
 
-    /// The mean; 0 of no cell.
+    /// Mean distance; 0 without cells.
     #[must_use]
     pub fn mean(&self) -> f64 {
         self.sum / self.cells.max(1) as f64
@@ -97,7 +97,7 @@ pub struct Converted {
     pub wet: Planes,
     /// Planes of the dry layers, the newest first.
     pub dry: Vec<Planes>,
-    /// How near its painted cells come to what was seen.
+    /// Distance of its painted cells from their old appearance.
     pub distance: Distance,
 }
 
@@ -111,7 +111,7 @@ pub struct Converter<'a> {
 }
 
 impl<'a> Converter<'a> {
-    /// A conversion under a look, whose paints it may use.
+    /// A conversion under an appearance, whose paints it may use.
     #[must_use]
     pub fn new(look: &'a Appearance, from: Colouring, to: Colouring) -> Self {
         let palette = Palette::new(look);
@@ -127,8 +127,8 @@ impl<'a> Converter<'a> {
         }
     }
 
-    /// The paint of a tile in the other colours. Planes of the model's own are left out. What a tile becomes depends on it
-    /// and its ground alone.
+    /// The paint of a tile in the other colours, without the model's own planes. The result depends on the tile and its
+    /// ground alone.
     #[must_use]
     pub fn tile(&self, tile: &Tile, ground: TileGround<'_>) -> Converted {
         let stack = tile.dry();
@@ -173,7 +173,7 @@ impl<'a> Converter<'a> {
         converted
     }
 
-    /// How near what is seen now comes to what was seen, over the painted cells.
+    /// Distance between the new and the old appearance, over the painted cells.
     fn distance(&self, tile: &Tile, before: &Shown, after: &Shown) -> Distance {
         let wet = tile.wet();
         let dry = tile.dry().map(|stack| stack.height());
@@ -194,15 +194,15 @@ impl<'a> Converter<'a> {
                         film_m: f64::from(film) * QUANTUM_M,
                     }),
                     cells: 1,
-                    far: u64::from(delta_e > FAR),
+                    far: u64::from(delta_e > OBVIOUS_DELTA_E),
                 });
             }
         }
         distance
     }
 
-    /// A layer with the paints of each cell chosen anew: over `under` it is to have the colour that `wanted` has. Of dry
-    /// volumes it is also chosen how much they hide, as if so much had stayed wet over them.
+    /// A layer with fitted paints in each cell, which has the colour of `wanted` over `under`. For dry volumes the
+    /// opacity is fitted too, as wet quanta over them.
     fn layer(
         &self,
         planes: &Planes,
@@ -227,7 +227,7 @@ impl<'a> Converter<'a> {
         let mut over = vec![0.0; TILE_CELLS];
         for cell in (0..TILE_CELLS).filter(|cell| !left_alone[*cell]) {
             let all = fit.take(&own, cell);
-            // More than a cell holds may not be exact as a count of one paint.
+            // More than a cell's capacity may not be exact as a count of one paint.
             if !(1..=u64::from(CELL_MAX)).contains(&all) {
                 continue;
             }
@@ -264,7 +264,7 @@ impl<'a> Converter<'a> {
     }
 }
 
-/// Counts without planes of the model's own.
+/// Counts without the model's own planes.
 fn plain(planes: &Planes) -> Planes {
     planes.iter().cloned().collect()
 }

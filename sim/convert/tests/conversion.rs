@@ -1,5 +1,4 @@
-//! Tiles converted between films and volumes, and how near they come as the display shows them: an oracle of its own, for a
-//! conversion does not use it.
+//! Tiles converted between films and volumes, and their distance by the display's code, an independent oracle.
 
 use std::sync::Arc;
 
@@ -17,7 +16,7 @@ use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::relief::Relief;
 use maulstick_canvas::tile::{Tile, TileId};
-use maulstick_convert::{Converted, Converter, Distance, FAR, TileGround};
+use maulstick_convert::{Converted, Converter, Distance, OBVIOUS_DELTA_E, TileGround};
 use maulstick_dab::Layers;
 use maulstick_dab::layers::VOLUMES;
 use maulstick_optics::colour::{apply, delta_e_2000, inverse, lab};
@@ -112,14 +111,14 @@ impl Easel {
     }
 }
 
-/// Numbers that look random (Knuth's multiplicative hash), 0 to 1.
+/// Pseudorandom numbers (Knuth's multiplicative hash), 0 to 1.
 fn drawn(seed: usize) -> f32 {
     let mixed = (seed as u32).wrapping_mul(2_654_435_761) ^ 0x9e37_79b9;
     let mixed = mixed.wrapping_mul(0x85eb_ca6b) ^ (mixed >> 13);
     (mixed.wrapping_mul(0xc2b2_ae35) >> 8) as f32 / (1u32 << 24) as f32
 }
 
-/// A layer of strokes: patches of mixtures of two or three paints that go over into each other, `thick` m in the mean.
+/// A layer of strokes: patches of mixtures of two or three paints with soft transitions, `thick` m in the mean.
 fn strokes(seed: usize, thick: f32, thinner: f32, gaps: bool) -> Planes {
     let mut planes = vec![vec![0.0f32; TILE_CELLS]; PAINTS.len()];
     for cell in 0..TILE_CELLS {
@@ -186,7 +185,7 @@ fn distances(one: &[[f64; 3]], other: &[[f64; 3]]) -> [f64; 3] {
     [mean, all[all.len() * 95 / 100], all[all.len() - 1]]
 }
 
-/// A tile, and what its conversion to volumes and to films may be off: mean and 95th percentile, ΔE₀₀.
+/// A tile, and the tolerances of its conversion to volumes and to films: mean and 95th percentile, ΔE₀₀.
 struct Subject {
     name: &'static str,
     tile: Tile,
@@ -255,8 +254,8 @@ fn volumes_stay_by_cell_and_layer_and_colours_come_near() {
                 let seen = easel.seen(&other, to);
                 let pairs = before.iter().zip(&seen);
                 let off: Vec<f64> = pairs.map(|(one, two)| delta_e_2000(*one, *two)).collect();
-                let beyond = off.iter().filter(|off| **off > FAR).count() as u64;
-                println!("{} of {beyond} beyond {FAR}", own.far);
+                let beyond = off.iter().filter(|off| **off > OBVIOUS_DELTA_E).count() as u64;
+                println!("{} of {beyond} beyond {OBVIOUS_DELTA_E}", own.far);
                 assert!(own.far.abs_diff(beyond) < 40);
                 let [x, y] = own.farthest.expect("a cell").cell;
                 assert!((off[y * 64 + x] - worst).abs() < 0.1, "it is told where");
@@ -265,15 +264,16 @@ fn volumes_stay_by_cell_and_layer_and_colours_come_near() {
     }
 }
 
-/// Wet volumes hide less than films that are as thin, and nothing can be noted over them.
+/// Wet volumes are less opaque than equally thin films, and have no notes over them.
 #[test]
 fn a_wet_veil_comes_as_near_as_its_volume_lets_it() {
     let easel = Easel::new("gesso");
     let veil = |wet: bool| {
         let film = strokes(2, 15e-6, 0.3, false);
-        let tile = match wet {
-            true => tile(film, Vec::new()),
-            false => tile(Planes::new(), vec![film]),
+        let tile = if wet {
+            tile(film, Vec::new())
+        } else {
+            tile(Planes::new(), vec![film])
         };
         let other = tile_of(easel.converted(&tile, Colouring::Films, VOLUME_MIX));
         let before = easel.seen(&tile, Colouring::Films);
@@ -306,7 +306,7 @@ fn there_and_back_is_as_it_was() {
     }
 }
 
-/// Mean distance of a painting of volumes that went to films and back, ΔE₀₀.
+/// Tolerance of the mean distance of a painting of volumes that was converted to films and back, ΔE₀₀.
 const BACK: f64 = 2.0;
 
 #[test]
@@ -341,7 +341,7 @@ fn cells_of_wells_and_tiles_of_the_same_colouring_keep_each_count() {
     assert!(same.wet == *wet && same.distance.cells == 0);
 }
 
-/// Pure paints and mixtures of a common palette, whatever the thickness, and a mixture that these paints cannot show.
+/// Pure paints and mixtures of a common palette, at any thickness, and a mixture out of gamut.
 #[test]
 fn common_mixtures_are_met_and_what_is_out_of_gamut_is_told() {
     const NEAR: f64 = 0.5;
@@ -383,7 +383,7 @@ fn common_mixtures_are_met_and_what_is_out_of_gamut_is_told() {
     assert!((farthest.film_m - 200e-6).abs() < 1e-6 && !farthest.is_thin());
     let all = TILE_CELLS as u64;
     assert_eq!((told.cells, told.far), (all, 0));
-    // Of a surface it is known where, and the farther one counts.
+    // Moved to a surface, the place is the surface's, and the farther cell is kept.
     let mut surface = told.moved([64, 128]);
     let cell = farthest.cell;
     let there = surface.farthest.map(|farthest| farthest.cell);

@@ -1,4 +1,4 @@
-//! Checkpoints that a painter's thread hands over.
+//! Checkpoints from a painter's thread.
 
 use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -13,25 +13,25 @@ pub(crate) fn wall_ms() -> u64 {
     since.map_or(0, |since| since.as_millis() as u64)
 }
 
-/// Checkpoint of a painting, with its place in the journal and the files that belong to it.
+/// Checkpoint of a painting, with its place in the journal and its files.
 #[derive(Clone, Debug)]
 pub struct Checkpoint {
     /// The painting.
     pub painting: maulstick_painting::Checkpoint,
-    /// The sequencer.
+    /// State of the sequencer.
     pub sequencer: SequencerSnapshot,
     /// Pictures and spectra of grounds and teeth, by their hash.
     pub pictures: Vec<(String, Arc<[u8]>)>,
-    /// Change of the record.
+    /// Change of the record since the last checkpoint.
     pub record: RecordChange,
-    /// True if it holds all of the painting, and not only what changed.
+    /// True if it contains the whole painting, not only the changes.
     pub is_whole: bool,
-    /// Records that were accepted before it and are not handed over yet.
+    /// Accepted records that were not handed over before.
     pub records: Vec<Record>,
 }
 
 impl Checkpoint {
-    /// Checkpoint of a painting, with the tiles that are newer than the version `since`: all of them with 0.
+    /// Checkpoint of a painting, with the tiles newer than the version `since`; all of them for 0.
     pub fn of(sequencer: &mut Sequencer, since: u64) -> Self {
         let snapshot = sequencer.kept();
         let records = sequencer.take_records();

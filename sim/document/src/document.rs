@@ -24,7 +24,7 @@ use crate::thread::queues::{CLOSED, DocumentBacking, Fetch, Life, PANICKED, Shar
 pub struct DocumentSettings {
     /// The file.
     pub path: PathBuf,
-    /// Read or written.
+    /// Access: read only or read and write.
     pub access: Access,
     /// Limit on the pages in memory, bytes.
     pub memory: usize,
@@ -56,8 +56,7 @@ pub struct Document {
 impl Document {
     /// Opens a painting, or creates its file: then there is no [`Opened`].
     ///
-    /// # Errors
-    /// Any [`DocumentError`]; the file is unchanged.
+    /// # Errors Any [`DocumentError`]; the file is unchanged.
     pub fn open(settings: &DocumentSettings) -> Result<(Self, Option<Opened>), DocumentError> {
         let vfs = settings.vfs.as_deref();
         let (database, new) = Database::open(&settings.path, settings.access, vfs)?;
@@ -72,7 +71,7 @@ impl Document {
         };
         if let Some(found) = &found {
             shared.committed.store(found.next_index(), SeqCst);
-            // Only the limit of the record depends on it.
+            // Used only for the limit of the record.
             let bytes = record::bytes(&database).unwrap_or_default();
             shared.record_bytes.store(bytes, SeqCst);
         }
@@ -103,12 +102,11 @@ impl Document {
         })
     }
 
-    /// Creates a document for a painting that was in memory alone. Its first checkpoint, which has to contain the whole
-    /// painting, is written completely or not at all; after that [`limit_memory`](Self::limit_memory) lets pages leave
-    /// memory.
+    /// Creates a document for a painting that was in memory alone. Its first checkpoint must contain the whole
+    /// painting, and is written completely or not at all; after that [`limit_memory`](Self::limit_memory) lets pages
+    /// leave memory.
     ///
-    /// # Errors
-    /// [`DocumentError::Taken`] if there is a file already, or the reason why it cannot be created.
+    /// # Errors [`DocumentError::Taken`] if the file exists, or the reason why it cannot be created.
     pub fn begin(settings: &DocumentSettings, pager: &Arc<Pager>) -> Result<Self, DocumentError> {
         make_room(&settings.path, false)?;
         let vfs = settings.vfs.as_deref();
@@ -123,7 +121,7 @@ impl Document {
         )
     }
 
-    /// Cancels a first checkpoint that could not be written; false if it is being written at this moment.
+    /// Cancels a first checkpoint that could not be written; false while it is being written.
     #[must_use]
     pub fn cancel_checkpoint(&self) -> bool {
         let mut queues = self.shared.lock();
@@ -216,7 +214,7 @@ impl Document {
         TileCache(Arc::clone(&self.shared))
     }
 
-    /// Hands over accepted records, which are in the file within a tenth of a second.
+    /// Hands over accepted records, which are written to the file within a tenth of a second.
     pub fn record(&self, records: Vec<Record>) {
         if !records.is_empty() {
             self.shared.lock().records.extend(records);
@@ -231,15 +229,15 @@ impl Document {
         queues.checkpoint.is_none() && !queues.writing
     }
 
-    /// True if its file lacks parts of the painting, as after its journal was cut short: the next checkpoint has to hold all
-    /// of it ([`Painting::tell_all_again`](maulstick_painting::Painting::tell_all_again), from the version 0 on), and nothing
-    /// is written before.
+    /// True if its file lacks parts of the painting, as after its journal was cut short: the next checkpoint must
+    /// contain all of it ([`Painting::tell_all_again`](maulstick_painting::Painting::tell_all_again), from the version
+    /// 0 on), and nothing is written before.
     #[must_use]
     pub fn wants_all(&self) -> bool {
         self.shared.lock().wants_all
     }
 
-    /// True if everything handed over is written, and the file lacks nothing of the painting.
+    /// True if everything handed over is written, and the file is complete.
     #[must_use]
     pub fn is_saved(&self) -> bool {
         let queues = self.shared.lock();
@@ -247,7 +245,7 @@ impl Document {
         idle && !queues.writing && !queues.wants_all && queues.fault.is_none()
     }
 
-    /// Hands over a checkpoint. It has to include all records handed over before, and the previous one has to be written
+    /// Hands over a checkpoint. It must include all records handed over before, and the previous one must be written
     /// ([`is_ready`](Self::is_ready)).
     pub fn write_checkpoint(&self, checkpoint: Checkpoint) {
         self.shared.lock().checkpoint = Some(checkpoint);
@@ -260,17 +258,16 @@ impl Document {
         self.shared.committed.load(SeqCst)
     }
 
-    /// Bytes that the record takes in the file, as of the last checkpoint.
+    /// Size of the record in the file at the last checkpoint, bytes.
     #[must_use]
     pub fn record_bytes(&self) -> u64 {
         self.shared.record_bytes.load(SeqCst)
     }
 
-    /// Records from a serial number on, as many as are in a row of the file; `None` at the end. It reads what is
-    /// written, not what was handed over since.
+    /// Records from a serial number on, as many as a row of the file has; `None` at the end. Records that are handed
+    /// over but not written are left out.
     ///
-    /// # Errors
-    /// [`DocumentError::Damaged`] if it is not intact, or the reason why it cannot be read.
+    /// # Errors [`DocumentError::Damaged`] if it is not intact, or the reason why it cannot be read.
     pub fn record_row(&self, serial: u64) -> Result<Option<RecordRow>, DocumentError> {
         let row = self.shared.request(|answer| Fetch::Records(serial, answer));
         row.unwrap_or_else(|| Err(DocumentError::Other(CLOSED.to_owned())))
@@ -282,7 +279,7 @@ impl Document {
         Duration::from_nanos(self.shared.page_in_ns.load(SeqCst))
     }
 
-    /// The reason why nothing is written at present, or a notice about the file, with advice; `None` if there is neither.
+    /// The reason why nothing is written at present, or a notice about the file, with advice; `None` without either.
     #[must_use]
     pub fn fault(&self) -> Option<(String, Advice)> {
         let queues = self.shared.lock();

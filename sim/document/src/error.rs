@@ -5,51 +5,51 @@ use std::path::PathBuf;
 use maulstick_types::command::advice::Advice;
 use rusqlite::ffi;
 
-/// The reason why a document cannot be opened, read or written.
+/// Errors of opening, reading and writing a document.
 #[derive(Debug, thiserror::Error)]
 pub enum DocumentError {
-    /// File that is not a painting.
+    /// The file is not a painting.
     #[error("this is not a Maulstick painting")]
     NoPainting,
     /// No file at the path.
     #[error("there is no such file")]
     Missing,
-    /// Painting of a format that is not read any more.
+    /// A painting of a format that is no longer read.
     #[error("this painting has the format {0}, which this program does not read any more")]
     Older(i32),
-    /// Painting of a newer program.
+    /// A painting of a newer program.
     #[error("this painting has the format {found}, but this program knows formats up to {known}")]
     Newer {
-        /// Its schema.
+        /// Schema of the file.
         found: i32,
-        /// The newest that is known.
+        /// Newest known schema.
         known: i32,
     },
-    /// Another program has it open.
+    /// Another program has the file open.
     #[error("the painting is open in another program{}", holder.map_or(String::new(), |pid| format!(" (process {pid})")))]
     InUse {
-        /// Its process, if the system says so.
+        /// Its process, if the system reports it.
         holder: Option<i32>,
     },
-    /// This program itself has it open, maybe by another name.
+    /// This program itself has it open, perhaps by another name.
     #[error("this painting is open here already")]
     OpenHere,
-    /// Name under which SQLite keeps the journal of another painting.
+    /// A name that SQLite uses for the journal of another painting.
     #[error("a file with this extension may belong to another painting")]
     Companion,
     /// The file or its folder cannot be written to.
     #[error("the painting cannot be written to: {0}")]
     ReadOnly(String),
-    /// No room on the disk.
+    /// The disk is full.
     #[error("the disk is full")]
     Full,
-    /// The disk does not read or write.
+    /// The disk cannot be read or written.
     #[error("the disk fails: {0}")]
     Disk(String),
-    /// No room on the disk to merge the journal of a painting that is to be closed.
+    /// The disk has no room for merging the journal of a painting that is to be closed.
     #[error("the disk has no room to close the painting {}", .0.display())]
     Unmerged(PathBuf),
-    /// Tables that another program changed, or that are not a painting's.
+    /// Tables changed by another program, or not a painting's.
     #[error("another program changed the painting's tables: {0}")]
     Altered(String),
     /// Rows or bytes that are not intact.
@@ -68,13 +68,13 @@ pub enum DocumentError {
     /// The latest strokes could not be written.
     #[error("the latest strokes are not in the file: {0}")]
     Unwritten(String),
-    /// File that lost a part of the painting, or in which it continues after that, and that did not get that part again.
+    /// A file that lost a part of the painting, or replaces one that did, before that part was written again.
     #[error("{} lacks a part of the painting", .0.display())]
     Incomplete(PathBuf),
-    /// The file of an open painting is gone, and no other could be made.
+    /// The file of an open painting is gone, and no other could be created.
     #[error("{0}")]
     Vanished(String),
-    /// File at the path where a new one is to be written.
+    /// A file exists at the path of a new one.
     #[error("a file of this name exists already")]
     Taken,
     /// Any other error of SQLite or the system.
@@ -104,7 +104,7 @@ impl std::fmt::Display for RowKind {
 }
 
 impl DocumentError {
-    /// Advice.
+    /// Remedy, for a person.
     #[must_use]
     pub fn advice(&self) -> Advice {
         let words = match self {
@@ -126,14 +126,14 @@ impl DocumentError {
                 "while it is open, ask again in a second; once it is closed, recover from the file before it what is whole"
             }
             Self::OpenHere | Self::Companion => "give another name",
-            Self::Taken => "give another name: nothing is written over",
+            Self::Taken => "give another name: an existing file is never replaced",
             Self::Vanished(_) => "save it under another name now: until then it is in memory alone",
             Self::Other(_) => "check the path and the disk",
         };
         Advice::say(words)
     }
 
-    /// True if it does not speak of the bytes in the file: what cannot be read now may be whole, and be read later.
+    /// True if it does not concern the bytes of the file: they may be intact, and readable later.
     pub(crate) fn may_pass(&self) -> bool {
         !matches!(
             self,

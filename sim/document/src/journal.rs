@@ -16,7 +16,7 @@ use crate::error::DocumentError;
 use crate::file::database::Database;
 use crate::tables::checksum::journal_checksum;
 
-/// Largest number of records in a row: many wait where the disk was full.
+/// Greatest number of records in a row: many wait where the disk was full.
 pub(crate) const ROW_RECORDS: usize = 64;
 /// Largest size of a row's data, bytes: that of [`ROW_RECORDS`] of the longest records behind a row of the record, and of the 1024
 /// longest states that earlier versions wrote in one.
@@ -32,9 +32,9 @@ const NO_ORIGIN: Origin = Origin {
 pub(crate) struct JournalRow {
     /// Serial numbers of its first and last record.
     pub(crate) ends: [u64; 2],
-    /// Its records, compressed.
+    /// Compressed records.
     pub(crate) data: Vec<u8>,
-    /// True if they match their checksum.
+    /// True if the records match their checksum.
     pub(crate) is_intact: bool,
 }
 
@@ -90,7 +90,7 @@ fn message(record: &Record) -> Result<Vec<u8>, DocumentError> {
             encode(&NO_ORIGIN, Flags::NONE, record.serial, 0, 0, &entry)
         }
     };
-    // The sequencer accepts nothing that is too long.
+    // The sequencer rejects records that are too long.
     bytes.map_err(|error| DocumentError::Other(error.to_string()))
 }
 
@@ -114,7 +114,7 @@ pub(crate) fn encoded(records: &[Record]) -> Result<Vec<u8>, DocumentError> {
     Ok(bytes)
 }
 
-/// Writes records, of which there is at least one, as a row of the journal.
+/// Writes at least one record as a row of the journal.
 pub(crate) fn put(database: &Database, records: &[Record]) -> Result<(), DocumentError> {
     let (Some(first), Some(last)) = (records.first(), records.last()) else {
         return Ok(());
@@ -138,7 +138,7 @@ pub fn read(first: u64, bytes: &[u8]) -> Result<Vec<Record>, DocumentError> {
     decoded(first, &unpacked(bytes)?)
 }
 
-/// Bytes of a row before they were compressed.
+/// Bytes of a row before compression.
 pub(crate) fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, DocumentError> {
     let mut packed = zstd::stream::read::Decoder::new(bytes)?.take(ROW_MAX as u64 + 1);
     let mut bytes = Vec::new();
@@ -196,7 +196,7 @@ mod tests {
 
     use super::*;
 
-    /// A decision in words, as version 11 of the entry has it.
+    /// A decision in words, in version 11 of the entry.
     const WORDED: [u8; 79] = [
         0x4c, 0x4d, 0x0b, 0x00, 0xc8, 0x91, 0xb9, 0xa5, 0x04, 0x03, 0x02, 0x01, 0x08, 0x07, 0x06,
         0x05, 0x03, 0x00, 0x00, 0x00, 0x1f, 0x00, 0x00, 0x00, 0x0b, 0x00, 0x00, 0x00, 0x00, 0x00,

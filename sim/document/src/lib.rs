@@ -1,18 +1,18 @@
 //! The painting as a file.
 //!
-//! A painting is one SQLite database (`.maul`), open in one program at a time. It holds the tiles with
-//! their history, the records accepted since the last checkpoint (the journal) and those before (the record), named
-//! versions, tiles as they are displayed, and the files that the painting is made with. `docs/document.md` describes the tables.
+//! A painting is one SQLite database (`.maul`), open in one program at a time. It holds the tiles with their history,
+//! the records accepted since the last checkpoint (the journal) and those before (the record), named versions,
+//! displayed tiles, and the painting's files. `docs/document.md` describes the tables.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`document`], `thread` | an open painting; the thread that owns its file, and the queues between them |
 //! | [`checkpoint`], [`writing`], [`opening`] | a checkpoint of a painting, written as one transaction and read back |
 //! | [`journal`] | accepted records as bytes |
-//! | [`record`] | what was accepted since the beginning of the record, to be executed again |
+//! | [`record`] | records accepted since the beginning of the record, for replay |
 //! | [`file`](mod@file) | the file: locks, pages read one by one, relocation, removal while it is open |
 //! | [`tables`] | tables and migrations, rows, checksums, paint as bytes |
-//! | [`stats`], [`pack`] | sizes and integrity of a file; making it small |
+//! | [`stats`], [`pack`] | sizes and integrity of a file; packing it |
 //! | [`error`] | errors, each with advice |
 //!
 //! A painting in memory gets a file, is closed, and is opened again:
@@ -43,17 +43,18 @@
 //!
 //! # Durability
 //!
-//! - One SQLite file in the hands of one thread. Accepted records are committed every tenth of a second; every second a
-//!   checkpoint writes changed tiles, steps and state in one transaction. Pages that take long go ahead in transactions
-//!   of their own, with the journal written between. After a crash the newest checkpoint is read and later records are
-//!   accepted again; that the painting continues is a journal entry itself. Who waits for a page is served first, even
+//! - One thread owns the SQLite file. Accepted records are committed every tenth of a second; every second a checkpoint
+//!   writes changed tiles, steps and state in one transaction. Pages that take long are written before, in separate
+//!   transactions, with the journal in between. After a crash the newest checkpoint is read and later records are
+//!   accepted again; the continuation itself is a journal entry. Readers that wait for a page are served first, even
 //!   within a transaction.
-//! - Tiles as they are displayed are kept too, so a picture is there before its paint is read.
-//! - Files come from anywhere: one function opens them and executes nothing of theirs, their schema is compared with
-//!   our own, and a page is bounded by what its paints can hold.
+//! - Displayed tiles are stored too, so a picture appears before its paint is read.
+//! - Files may come from anywhere: one function opens them and executes nothing in them, their schema is compared with
+//!   our own, and a page is bounded by the size of its paints.
 //! - At each commit, and each second, the thread checks that its files still have their names. Where one is gone or
-//!   replaced, everything goes to a new file beside. While the disk fails no page leaves memory. A journal cut short in
-//!   place has lost its records: the file as last merged continues under another name and receives the whole painting.
+//!   replaced, everything is written to a new file beside it. While the disk fails no page leaves memory. A journal cut
+//!   short in place has lost its records: the last merged file continues under another name and receives the whole
+//!   painting.
 //! - Moving to another file needs no restart: the thread merges its journal, copies or renames between two
 //!   transactions, and continues there or stays.
 //! - Record: each checkpoint moves what it includes from the journal into one row of the table `record`, with its time.

@@ -1,4 +1,4 @@
-//! Packing: a painting's file made as small as possible.
+//! Packing: makes a painting's file as small as possible.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -15,15 +15,15 @@ use crate::tables::planes;
 /// Parts that a packed painting leaves out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Forget {
-    /// Nothing.
+    /// Keeps all parts.
     Nothing,
-    /// The record of what was painted, which begins anew.
+    /// The record of the painting; a new one begins.
     Record,
-    /// The steps of its history, and the record, for that may undo them; versions stay.
+    /// The steps of its history, and the record, which may undo them; versions stay.
     History,
 }
 
-/// Pages recompressed in one transaction.
+/// Number of pages recompressed in one transaction.
 const BATCH: usize = 256;
 
 /// Packs a painting; returns the size of its file before and after, bytes. Each step is a transaction of SQLite, so the
@@ -65,10 +65,9 @@ pub fn pack(
     Ok([before, std::fs::metadata(path)?.len()])
 }
 
-/// Replays the journal of a closed painting and writes the result; deletes what is to be forgotten.
+/// Replays the journal of a closed painting and writes the result; deletes the parts in `forget`.
 ///
-/// # Errors
-/// Any [`DocumentError`].
+/// # Errors Any [`DocumentError`].
 pub fn replay_journal(path: &Path, forget: Forget) -> Result<(), DocumentError> {
     let (document, opened) = Document::open(&DocumentSettings::new(path, Access::Paint))?;
     let Some(opened) = opened else {
@@ -91,7 +90,7 @@ pub fn replay_journal(path: &Path, forget: Forget) -> Result<(), DocumentError> 
     if !document.is_ready() {
         return document.close();
     }
-    // Pages of what was dropped are deleted with the next checkpoint.
+    // Pages of deleted parts are removed with the next checkpoint.
     let versions = sequencer.painting().versions();
     document.write_checkpoint(Checkpoint::of(&mut sequencer, versions));
     document.close()
@@ -120,8 +119,8 @@ impl Row {
         })?)
     }
 
-    /// Recompressed data and their checksum, if they are smaller. The input of the compression is the same at every level,
-    /// so the page that it is a difference to is not read.
+    /// Recompressed data and their checksum, if they are smaller. The input of the compression is equal at every level,
+    /// so the page's base is not read.
     fn recompressed(&self) -> Result<Option<(Vec<u8>, i64)>, DocumentError> {
         let damaged = |what: &str| DocumentError::Damaged(format!("page {} {what}", self.id));
         if page_checksum(self.id, self.ints, &self.data) != self.sum {

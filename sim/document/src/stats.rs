@@ -1,4 +1,4 @@
-//! Sizes of the tables of a painting's file, and a check that all of it is intact.
+//! Sizes of the tables of a painting's file, and a check of its integrity.
 
 use std::path::Path;
 
@@ -12,11 +12,11 @@ use crate::tables::schema;
 /// Format and sizes of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DocumentStats {
-    /// Version of its schema.
+    /// Schema version.
     pub format: i32,
-    /// Bytes of the file.
+    /// Size of the file, bytes.
     pub bytes: u64,
-    /// Bytes of data of each table that has any.
+    /// Size of the data of each non-empty table, bytes.
     pub tables: Vec<(&'static str, u64)>,
     /// The record, if there is one.
     pub record: Option<RecordStats>,
@@ -51,7 +51,7 @@ impl DocumentStats {
                 continue;
             }
             if table == "record" {
-                // Its rows count themselves.
+                // Its rows include their own sizes.
                 let bytes = record.map_or(0, |record| record.bytes);
                 tables.extend((bytes > 0).then_some((table, bytes)));
                 continue;
@@ -75,8 +75,7 @@ impl DocumentStats {
 
     /// Reads every page, of the painting and of its history.
     ///
-    /// # Errors
-    /// [`DocumentError::Damaged`] with the first that is not intact.
+    /// # Errors [`DocumentError::Damaged`] with the first damaged one.
     pub fn check(
         &self,
         path: &Path,

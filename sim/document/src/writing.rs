@@ -26,12 +26,12 @@ use crate::tables::rows::{
 use crate::tables::schema::Table;
 use crate::tables::{loads, planes};
 
-/// Tile as it is displayed.
+/// Displayed tile.
 #[derive(Clone, Debug)]
 pub struct ShownTile {
     /// Its place, [`crate::tables::rows::shown_number`].
     pub place: i64,
-    /// Tile version that it shows.
+    /// Tile version that is displayed.
     pub version: u64,
     /// Hash of the look under which it is displayed.
     pub look: i64,
@@ -39,15 +39,15 @@ pub struct ShownTile {
     pub bytes: Vec<u8>,
 }
 
-/// Removes what a painting that is written as a whole brings again, but pages, layers and loads: those that nothing refers to
-/// go when it is opened.
+/// Removes the rows that a whole checkpoint writes again, except pages, layers and loads: unreferenced ones are removed
+/// on opening.
 const CLEARED: &str = "DELETE FROM tile; DELETE FROM step; DELETE FROM version; \
      DELETE FROM journal; DELETE FROM record; DELETE FROM beginning; DELETE FROM shown";
 
 /// Callback between two pages, which serves readers that wait for one.
 pub(crate) type YieldHook<'a> = &'a mut dyn FnMut(&Database);
 
-/// Pages that were written, to be marked as stored once they are committed.
+/// Written pages, to be marked as stored after the commit.
 #[derive(Debug, Default)]
 pub(crate) struct Stored {
     planes: Vec<(Page<Planes>, usize)>,
@@ -68,17 +68,17 @@ impl Stored {
     }
 }
 
-/// Rows that a writer takes to be in the file.
+/// Rows that a writer assumes to be in the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Trust {
-    /// Those that are marked as stored.
+    /// Those marked as stored.
     #[default]
     Stored,
-    /// Only those that it finds there: the file is another one than that in which it was stored.
+    /// Only those found there, because the file is another one than before.
     Nothing,
 }
 
-/// Number, depth and planes of the page that another one is stored as a difference to.
+/// Number, depth and planes of the base of a difference.
 type Base = (i64, i64, Arc<Planes>);
 
 /// Writer of rows inside one transaction.
@@ -101,17 +101,17 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
     }
 
-    /// The same writer, which believes this.
+    /// This writer with the assumption `trust`.
     pub(crate) fn trusting(self, trust: Trust) -> Self {
         Self { trust, ..self }
     }
 
-    /// The pages that it wrote.
+    /// Pages that it wrote.
     pub(crate) fn stored(self) -> Stored {
         self.stored
     }
 
-    /// True if a row is in the file that is marked as stored.
+    /// True if a row marked as stored is in the file.
     fn has(&self, table: Table, id: u64, is_stored: bool) -> Result<bool, DocumentError> {
         if self.trust == Trust::Stored || !is_stored {
             return Ok(is_stored);
@@ -245,7 +245,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(())
     }
 
-    /// Base for a difference to `base`; `None` if its chain has the largest depth already.
+    /// Base for a difference from `base`; `None` if its chain has the largest depth already.
     fn base_of(&self, base: &Page<Planes>) -> Result<Option<Base>, DocumentError> {
         let id = base.id() as i64;
         let depth: Option<i64> = self
@@ -394,7 +394,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(hash)
     }
 
-    /// Writes the paints and brushes of a snapshot; the snapshot with their hashes in their place.
+    /// Writes the paints and brushes of a snapshot; returns the snapshot with their hashes instead.
     pub(crate) fn with_files(
         &self,
         snapshot: &PaintingSnapshot,

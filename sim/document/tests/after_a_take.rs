@@ -1,4 +1,4 @@
-//! A painting continues after a take that nobody ends any more.
+//! A painting continues after a take without an end.
 
 mod studio;
 

@@ -1,4 +1,5 @@
-//! The disk of an open painting fails for a while: it is painted on, told, and written once the disk is back.
+//! The disk of an open painting fails for a while: painting continues, the failure is reported, and all is written once
+//! the disk is back.
 
 mod crash_vfs;
 mod easel;
@@ -69,7 +70,7 @@ impl Session {
         }
     }
 
-    /// Strokes alone: an undo may need what is in the file alone.
+    /// Strokes alone: an undo may need rows that are in the file alone.
     fn paint_strokes(&mut self, strokes: usize) {
         let mut left = strokes;
         while left > 0 {
@@ -89,7 +90,7 @@ impl Session {
         }
     }
 
-    /// What is in the file after it was closed.
+    /// Content of the file after closing.
     fn closed(mut self) -> (Vec<String>, Vec<String>) {
         let seen = print(&mut self.easel.sequencer);
         self.easel.close();
@@ -121,7 +122,7 @@ fn a_painting_that_was_opened_again_is_painted_on_though_its_disk_fails() {
     let mut session = Session::begin();
     session.easel.close();
     session.easel = Easel::open(&session.settings).expect("whole");
-    // What nobody waits for is read after all that somebody waits for.
+    // Pages without a waiting reader are read after all others.
     let pager = session.easel.document.pager().clone();
     let pages = session.pages();
     while pages.iter().any(|page| page.peek().is_none()) {

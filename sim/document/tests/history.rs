@@ -1,4 +1,4 @@
-//! Whatever is done, undone and redone: the same bytes, in memory and in a document.
+//! Any sequence of edits, undo and redo gives the same bytes, in memory and in a document.
 
 mod studio;
 
@@ -12,7 +12,7 @@ use maulstick_types::command::Outcome;
 use proptest::prelude::*;
 use studio::{Painter, equip, print, sequencer};
 
-/// What a painting is to the eye: all but how deep its history is.
+/// Visible state of a painting: all but the depth of its history.
 fn seen(sequencer: &mut Sequencer) -> Vec<String> {
     let mut lines = print(sequencer);
     lines.remove(1);
@@ -23,7 +23,7 @@ fn is_done(outcome: &Outcome) -> bool {
     matches!(outcome, Outcome::Done { .. })
 }
 
-/// Paints with so many bytes of history, and undoes all of it.
+/// Paints with `quota` bytes of history, and undoes all of it.
 fn goes_back(seed: u64, acts: usize, quota: u64) -> Result<(), TestCaseError> {
     let mut painter = Painter::new(seed);
     let mut sequencer = sequencer(Arc::default());
@@ -45,7 +45,7 @@ fn goes_back(seed: u64, acts: usize, quota: u64) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// One of two who paint at once does so between the tiles that the other's stroke has reached, where its paint relaxes.
+/// One of two simultaneous painters paints between the tiles reached by the other's stroke, where its paint relaxes.
 #[test]
 fn two_who_paint_at_once_do_not_cover_each_other() {
     goes_back(9_554_720_162_090_198_157, 36, 1).expect("undone");
@@ -63,7 +63,7 @@ proptest! {
             let act = painter.next();
             painter.act(&mut sequencer, &act);
         }
-        // Steps that are undone already are not what is asked here.
+        // Steps already undone are not tested here.
         while is_done(&painter.command(&mut sequencer, Redo { brush: None })) {}
         let end = seen(&mut sequencer);
         let mut prints = vec![end];
@@ -79,15 +79,15 @@ proptest! {
         }
     }
 
-    /// Where the history has little room its oldest steps become one: it still goes back to the
-    /// beginning, and the newest steps stay apart.
+    /// With little room the oldest steps of the history are merged: it still goes back to the beginning, and the newest
+    /// steps stay separate.
     #[test]
     fn a_short_history_goes_back_as_far(seed in any::<u64>(), acts in 20usize..60, quota in 1u64..2_000_000) {
         goes_back(seed, acts, quota)?;
     }
 
-    /// A painting in a document, with little memory, closed, killed and opened again, beside one that
-    /// is in memory alone.
+    /// A painting in a document, with little memory, closed, killed and opened again, compared with one in memory
+    /// alone.
     #[test]
     fn a_document_is_the_painting(seed in any::<u64>(), acts in 1usize..60) {
         let folder = tempfile::tempdir().expect("a folder");
@@ -131,7 +131,7 @@ proptest! {
                 open.flush();
                 prop_assert_eq!(open.fault(), None);
                 prop_assert_eq!(open.committed(), kept.journal_next());
-                // As if the program were killed: the file is taken from it as it is.
+                // A copy of the file stands for a killed program.
                 let killed = settings.path.with_extension("killed.maul");
                 for suffix in ["", "-wal"] {
                     let of = |path: &std::path::Path| format!("{}{suffix}", path.display());
@@ -143,7 +143,7 @@ proptest! {
                 let opened = opened.expect("a painting");
                 since = opened.snapshot().versions;
                 kept = opened.sequencer().expect("whole");
-                twin.go_on();
+                twin.resume();
                 log.push("killed".to_owned());
                 let (one, two) = (print(&mut kept), print(&mut twin));
                 for (one, two) in one.iter().zip(&two) {

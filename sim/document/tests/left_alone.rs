@@ -1,4 +1,4 @@
-//! What is only looked at stays as it is, and what one wrong bit costs.
+//! A painting that is only read stays unchanged, and the cost of one wrong bit.
 
 mod studio;
 
@@ -12,7 +12,7 @@ use maulstick_document::{
 use rusqlite::{Connection, params};
 use studio::{Painter, equip, print, sequencer};
 
-/// A painting with some paint, closed; how it is.
+/// A closed painting with some paint; returns its state.
 fn painted(path: &Path) -> Vec<String> {
     let settings = DocumentSettings::new(path, Access::Paint);
     let (document, _) = Document::open(&settings).expect("begun");
@@ -144,7 +144,7 @@ fn looking_at_a_painting_that_was_not_closed_leaves_its_journal() {
     assert!(glance(&killed).expect("a painting"));
     DocumentStats::read(&killed).expect("read");
     assert!([bytes(&killed), bytes(&journal(&killed))] == before);
-    // What it holds is damaged: it is told, and the journal is still there.
+    // The damage is reported, and the journal is still there.
     let settings = DocumentSettings::new(&killed, Access::Paint);
     assert!(matches!(
         Document::open(&settings).err(),

@@ -1,4 +1,4 @@
-//! A painting of every paint model in a document: saved, opened again, undone and painted on as one in memory.
+//! A painting of every paint model in a document: saved, opened again, undone and continued like one in memory.
 
 mod easel;
 mod studio;
@@ -42,8 +42,8 @@ fn each_goes_on_in_its_document_as_in_memory() {
             document: _open,
             ..
         } = Easel::open(&settings).expect("whole");
-        // What is opened continues with lifted brushes.
-        alone.go_on();
+        // An opened painting continues with lifted brushes.
+        alone.resume();
         assert_eq!(kept.painting().model(CANVAS), Some(model));
         assert_eq!(print(&mut kept), print(&mut alone), "{model} opened again");
         for _ in 0..15 {

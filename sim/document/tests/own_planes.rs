@@ -1,4 +1,4 @@
-//! A plane of 8 bits that a toy model keeps of its own: through store, history and document, byte for byte.
+//! A plane of 8 bits, owned by a toy model: through store, history and document, byte for byte.
 
 mod studio;
 
@@ -48,7 +48,7 @@ fn count(own: &[OwnPlane]) -> Counts {
 }
 
 impl PaintModel for Toy {
-    /// It works where a marker would.
+    /// It works on the same cells as a marker.
     fn name(&self) -> &'static str {
         "marker"
     }

@@ -1,4 +1,4 @@
-//! A painting outlives a power cut at any moment: all that was said to be in the file is in it.
+//! A painting survives a power cut at any moment: all that was reported as written is in its file.
 
 mod crash_vfs;
 mod easel;
@@ -15,24 +15,24 @@ use rand_pcg::rand_core::Rng as _;
 use studio::{Dice, Painter, print};
 use tempfile::TempDir;
 
-/// What was known of the file at a point of the log.
+/// Knowledge about the file at a point of the log.
 struct Note {
     point: usize,
     /// Journal entries below this index were committed.
     committed: u64,
 }
 
-/// A painting that was painted, with all that its file went through.
+/// A painting session, with all operations on its file.
 struct Session {
     log: Log,
     notes: Vec<Note>,
-    /// What the painting was after so many accepted things, and the index of the next journal entry.
+    /// Fingerprint of the painting by number of accepted messages, and the index of the next journal entry.
     prints: BTreeMap<u64, (u64, Vec<String>)>,
     _folder: TempDir,
 }
 
 impl Session {
-    /// Paints from a seed, in a file that is closed and opened again now and then.
+    /// Paints from a seed, in a file that is closed and opened again occasionally.
     fn paint(seed: u64, acts: usize) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().canonicalize().expect("there").join("a.maul");
@@ -88,7 +88,7 @@ impl Session {
         });
     }
 
-    /// What is wrong with the painting in an image of the files after a power cut at `point`.
+    /// The fault of the painting in an image of the files after a power cut at `point`.
     fn check(&self, image: &crash_vfs::Image, point: usize) -> Result<(), String> {
         let folder = tempfile::tempdir().expect("a folder");
         image.write_to(folder.path(), "b.maul");
@@ -106,7 +106,7 @@ impl Session {
         }
         document.close().map_err(|error| error.to_string())?;
         let mut easel = Easel::open(&settings)?;
-        // That it continues is an entry of its own.
+        // The continuation is a separate entry.
         let serial = easel.sequencer.serial() - 1;
         let index = easel.sequencer.journal_next() - 1;
         if index < committed {
@@ -115,7 +115,7 @@ impl Session {
         let found = print(&mut easel.sequencer);
         let new = (0, Vec::new());
         let (_, expected) = self.prints.get(&serial).unwrap_or(&new);
-        // Before the first brush was there nobody looked at it.
+        // The painting was not compared before its first brush.
         if serial > 0 && found != *expected {
             let differs = found.iter().zip(expected).find(|(one, other)| one != other);
             return Err(format!(
@@ -135,7 +135,7 @@ impl Session {
         easel.try_close()
     }
 
-    /// What was wrong after power cuts at so many random points.
+    /// Faults after power cuts at random points.
     fn cut(
         &self,
         cuts: usize,
@@ -182,7 +182,7 @@ fn paintings_outlive_two_hundred_power_cuts() {
     }
 }
 
-/// A disk that says that it has synced and has not.
+/// A disk that reports a sync without syncing is detected.
 #[test]
 fn a_disk_that_lies_is_found_out() {
     let session = Session::paint(7, 60);

@@ -1,5 +1,5 @@
-//! The record of a painting, executed again from its beginning, gives the painting: however it was painted, closed,
-//! killed and opened again.
+//! Replaying the record of a painting from its beginning gives the painting, however it was painted, closed, killed and
+//! opened again.
 
 mod easel;
 mod studio;
@@ -22,7 +22,7 @@ use maulstick_types::scene::{CANVAS, PALETTE};
 use proptest::prelude::*;
 use studio::{Act, Dice, Painter, tiles};
 
-/// What lies on each tile.
+/// Contents of each tile.
 type Tiles = BTreeMap<TilePlace, Vec<u64>>;
 
 fn settings(path: &Path, access: Access) -> DocumentSettings {
@@ -32,7 +32,7 @@ fn settings(path: &Path, access: Access) -> DocumentSettings {
     }
 }
 
-/// All messages of a record, and the tiles that they give where `skips` is false.
+/// All messages of a record, and the tiles from those where `skips` is false.
 fn executed_again(path: &Path, mut skips: impl FnMut(&Record) -> bool) -> Option<(usize, Tiles)> {
     let settings = DocumentSettings::new(path, Access::Read);
     let (document, opened) = Document::open(&settings).expect("opened");
@@ -52,7 +52,7 @@ fn executed_again(path: &Path, mut skips: impl FnMut(&Record) -> bool) -> Option
     Some((count, tiles(&mut sequencer)))
 }
 
-/// The tiles of a painting as its file has them.
+/// Tiles of a painting in its file.
 fn stored(path: &Path) -> Tiles {
     let settings = DocumentSettings::new(path, Access::Read);
     let (_document, opened) = Document::open(&settings).expect("opened");
@@ -96,7 +96,7 @@ proptest! {
     }
 }
 
-/// The fault that the comparison is there to find.
+/// The seeded fault of the comparison.
 #[test]
 fn a_record_without_one_of_its_messages_gives_another_painting() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -112,7 +112,7 @@ fn a_record_without_one_of_its_messages_gives_another_painting() {
     assert!(again != stored(&path));
 }
 
-/// Paints until something lies on the canvas and `steps` strokes more.
+/// Paints until the canvas has paint, and `steps` strokes more.
 fn strokes(easel: &mut Easel, painter: &mut Painter, steps: usize) {
     let mut painted = 0;
     while painted < steps {
@@ -159,7 +159,7 @@ fn what_no_message_describes_begins_the_record_anew() {
     assert!((2..8).contains(&count), "{count} messages since");
     assert_eq!(again, stored(&path));
 
-    // An undo of what was painted before the beginning.
+    // An undo of a step before the beginning.
     let mut easel = Easel::open(&settings(&path, Access::Paint)).expect("opened");
     for _ in 0..7 {
         easel.sequencer.edit(Undo { brush: None }).expect("undone");
@@ -265,7 +265,7 @@ fn opening_reads_no_row_of_the_record() {
     let spoilt = "UPDATE record SET data = x'00'";
     database.connection().execute(spoilt, []).expect("spoilt");
     database.close().expect("closed");
-    // A painting whose record is damaged is whole, and its record is found to be damaged by those who read it.
+    // A painting whose record is damaged is whole, and readers of the record find the damage.
     assert_eq!(stored(&path), before);
     let (document, opened) =
         Document::open(&DocumentSettings::new(&path, Access::Read)).expect("opened");
@@ -300,7 +300,7 @@ fn packing_keeps_the_record_unless_it_is_to_be_forgotten() {
     }
 }
 
-/// A painting as the format before had it.
+/// A painting in the previous format.
 fn older(path: &Path) {
     let (database, _) = Database::open(path, Access::Paint, None).expect("opened");
     let older = "DROP TABLE beginning; DROP TABLE record; PRAGMA user_version = 4";
@@ -350,7 +350,7 @@ fn a_painting_of_the_format_before_is_read_as_it_is_and_gets_a_record_when_it_is
     assert_eq!(head[68..72], APPLICATION_ID.to_be_bytes());
 }
 
-/// A row that was written is there after the program was killed: the file as it is at that moment is opened.
+/// A written row survives the killing of the program: a copy of the file is opened.
 #[test]
 fn a_killed_program_leaves_its_record() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -391,7 +391,7 @@ fn a_killed_program_leaves_its_record() {
     assert_eq!((resumed, again), (1, stored(&killed)));
 }
 
-/// The tiles that a record gives in a copy that was taken back to where the record begins, and saved there.
+/// Tiles from a record in a copy that was rewound to the beginning of the record, and saved there.
 fn rewound(path: &Path, copy: &Path, skips: u64) -> Tiles {
     std::fs::copy(path, copy).expect("copied");
     assert!(rewind(copy).expect("taken back"));

@@ -13,8 +13,8 @@ use maulstick_painting::sequencer::Accepted;
 use maulstick_types::paint::{Decision, Entry, StepName};
 use studio::tiles;
 
-/// Painted with a program whose journal entries had version 11: a film of paint that was dried, a stroke and a return to a
-/// version.
+/// Painted with a program whose journal entries had version 11: a film of paint that was dried, a stroke and a return
+/// to a version.
 const PAINTING: &[u8] = include_bytes!("schema_6.maul.zst");
 
 fn unpacked(folder: &Path) -> PathBuf {
@@ -24,7 +24,7 @@ fn unpacked(folder: &Path) -> PathBuf {
     path
 }
 
-/// Decisions of its record, and whether the record gives its tiles.
+/// Decisions of its record, and true if the record gives its tiles.
 fn record(path: &Path) -> (Vec<Decision>, bool) {
     let settings = DocumentSettings::new(path, Access::Read);
     let (document, opened) = Document::open(&settings).expect("opened");

@@ -1,4 +1,4 @@
-//! A painting's file that another program changed: what it says is not done, and is told.
+//! A painting's file changed by another program: its contents are not executed, and the change is reported.
 
 mod easel;
 mod studio;
@@ -17,7 +17,7 @@ fn settings(path: &Path, access: Access) -> DocumentSettings {
     DocumentSettings::new(path, access)
 }
 
-/// A painting with some paint, closed; how it is.
+/// A closed painting with some paint; returns its state.
 fn painted(path: &Path) -> Vec<String> {
     let mut easel = Easel::begin(&settings(path, Access::Paint));
     let mut painter = Painter::new(3);
@@ -36,7 +36,7 @@ fn alter(path: &Path, statements: &str) {
     open.close().expect("closed");
 }
 
-/// What is said to each who opens a file, if all are refused alike.
+/// The error of opening a file, if all attempts are refused alike.
 fn refused(path: &Path) -> String {
     let mut said: Vec<String> = [Access::Paint, Access::Read]
         .into_iter()

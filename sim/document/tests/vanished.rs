@@ -1,4 +1,4 @@
-//! The file of an open painting is removed, replaced or named twice while it is painted on.
+//! The file of an open painting is removed, replaced or linked during painting.
 
 mod easel;
 mod studio;
@@ -44,7 +44,7 @@ fn journal(path: &Path) -> PathBuf {
     path.with_extension("maul-wal")
 }
 
-/// What somebody finds who opens a painting whose program was killed just now.
+/// State of a painting whose program was killed just now.
 fn after_a_kill(path: &Path) -> Vec<String> {
     let folder = tempfile::tempdir().expect("a folder");
     let copy = folder.path().join("killed.maul");
@@ -76,7 +76,7 @@ fn painted_on(harm: impl Fn(&Path)) {
     let seen = print(&mut easel.sequencer);
     assert_eq!(after_a_kill(&kept), seen);
     assert!(easel.document.is_saved());
-    // It is told for as long as the painter has given it no name.
+    // Reported until the painter has given it a name.
     assert!(easel.document.fault().is_some());
     let named = folder.path().join("named.maul");
     let moving = easel.document.relocate(&named, Relocate::Copy, false);
@@ -127,14 +127,14 @@ fn a_painting_whose_journal_was_cut_can_be_read_after_a_kill() {
     paint(&mut easel, &mut Painter::new(7));
     easel.flush();
     cut(&journal(&path), [0, 1]);
-    // Its program is killed before it can notice.
+    // Its program is killed before it can detect this.
     assert!(!after_a_kill(&path).is_empty());
 }
 
 #[test]
 fn a_painting_is_not_saved_while_its_file_lacks_a_part_of_it() {
     let folder = tempfile::tempdir().expect("a folder");
-    // It is noticed while it is open, or only when it is closed.
+    // Detected while it is open, or only when it is closed.
     for is_noticed in [true, false] {
         let path = folder.path().join(format!("sea-{is_noticed}.maul"));
         let mut easel = Easel::begin(&settings(&path));
@@ -171,7 +171,7 @@ fn a_painting_is_moved_only_when_its_file_has_all_of_it() {
             "{how:?}: {refused:?}"
         );
         assert!(!named.exists());
-        // What is accepted meanwhile does not keep it from being answered.
+        // Records accepted meanwhile do not delay the answer.
         let act = painter.next();
         easel.act(&mut painter, &act);
     }
@@ -190,7 +190,7 @@ fn a_painting_is_moved_only_when_its_file_has_all_of_it() {
 #[test]
 fn a_painting_that_was_cut_short_and_gets_no_file_beside_it_goes_on_where_it_is_saved() {
     let folder = tempfile::tempdir().expect("a folder");
-    // A name has 255 bytes at most: this one has room for its journal, but the name of a copy is too long.
+    // A name has at most 255 bytes: this one fits its journal, but the name of a copy is too long.
     let name = format!("{}.maul", "a".repeat(242));
     let [path, to] = [&*name, "b.maul"].map(|name| folder.path().join(name));
     let mut easel = Easel::begin(&settings(&path));
@@ -200,7 +200,7 @@ fn a_painting_that_was_cut_short_and_gets_no_file_beside_it_goes_on_where_it_is_
     cut(&journal(&path), [0, 1]);
     is_vanished(&easel.document, &path);
     assert!(!easel.document.is_saved());
-    // Over another painting only if that was asked for.
+    // Another painting is replaced only on request.
     Easel::begin(&settings(&to)).close();
     let moving = easel.document.relocate(&to, Relocate::Copy, false);
     let refused = easel.document.wait_for_relocation(&moving);
@@ -321,7 +321,7 @@ fn a_second_name_is_told_of_for_as_long_as_it_is_there() {
     }
 }
 
-/// Whether this process holds locks of a file, as the kernel lists them.
+/// True if this process holds locks of a file, from the kernel's list.
 fn is_locked(path: &Path) -> bool {
     let inode = format!(":{}", std::fs::metadata(path).expect("there").ino());
     let locks = std::fs::read_to_string("/proc/locks").expect("Linux");

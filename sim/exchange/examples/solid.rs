@@ -17,11 +17,11 @@ use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::BrushName;
 
-/// Of a cell, m.
+/// Side of a cell, m.
 const CELL_M: f64 = 2.5e-4;
-/// Between strokes, and from a stroke to the rim, mm.
+/// Distance between strokes, and from a stroke to the rim, mm.
 const APART_MM: f64 = 16.0;
-/// Between poses of a brush, mm.
+/// Distance between poses of a brush, mm.
 const POSE_MM: f64 = 2.0;
 const PAINTS: [&str; 3] = ["Pyrrole Red", "Titanium White", "Ultramarine Blue"];
 const SETUP: SolidSetup = SolidSetup {

@@ -1,4 +1,4 @@
-//! Pictures as a painting holds them: what its grounds and teeth are made of.
+//! Conversion of pictures for a painting's grounds and teeth.
 
 use std::sync::Arc;
 
@@ -8,11 +8,9 @@ use crate::fit_to::{colours, heights};
 use crate::import_error::ImportError;
 use crate::read_image::Image;
 
-/// A picture as a ground of a surface of `cells`, 8-bit RGB PNG: a pixel a cell, of very large surfaces
-/// one for several.
+/// A picture as a ground of a surface of `cells`, 8-bit RGB PNG: a pixel a cell, coarser on very large surfaces.
 ///
-/// # Errors
-/// [`ImportError`].
+/// # Errors [`ImportError`].
 pub fn ground(image: &Image, cells: [u32; 2]) -> Result<Arc<[u8]>, ImportError> {
     let all = u64::from(cells[0]) * u64::from(cells[1]);
     let mut coarse = 1u32;
@@ -26,11 +24,10 @@ pub fn ground(image: &Image, cells: [u32; 2]) -> Result<Arc<[u8]>, ImportError> 
     png_of(size, png::ColorType::Rgb, png::BitDepth::Eight, &raw)
 }
 
-/// A picture as a tooth that is `width_mm` wide on cells of `cell_m`, 16-bit grey PNG: as fine as the
-/// picture, but no finer than the cells, and of very many pixels coarser.
+/// A picture as a tooth that is `width_mm` wide on cells of `cell_m`, 16-bit grey PNG: as fine as the picture, but no
+/// finer than the cells, and coarser for very many pixels.
 ///
-/// # Errors
-/// [`ImportError`].
+/// # Errors [`ImportError`].
 pub fn tooth(image: &Image, width_mm: f64, cell_m: f64) -> Result<Arc<[u8]>, ImportError> {
     let pixels = image.size();
     let cells = (width_mm * 1e-3 / cell_m).round().max(1.0) as usize;

@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// Why a painting did not come into a file.
+/// Errors of exporting a painting.
 #[derive(Debug, thiserror::Error)]
 pub enum ExchangeError {
     /// The painting has no such surface.
@@ -14,29 +14,29 @@ pub enum ExchangeError {
     /// The file cannot be written.
     #[error("the file cannot be written: {0}")]
     Write(#[from] io::Error),
-    /// An OpenEXR file cannot hold this.
+    /// An OpenEXR file cannot contain this painting.
     #[error("the OpenEXR file cannot be written: {0}")]
     OpenExr(String),
-    /// A measure of a relief is out of its range.
+    /// An option of a solid is out of its range.
     #[error("a {what} of {value}; choose {least} to {most}")]
     OutOfRange {
-        /// Which one, with its unit.
+        /// Name of the option, with its unit.
         what: &'static str,
-        /// The factor.
+        /// Requested value.
         value: f64,
-        /// The least.
+        /// Least value.
         least: f64,
-        /// The greatest.
+        /// Greatest value.
         most: f64,
     },
-    /// A relief would have more triangles than its format can count.
+    /// A solid with more triangles than its format can count.
     #[error(
         "{triangles} triangles are too many for the file; choose a larger step, of {step} cells or more"
     )]
     TooManyTriangles {
-        /// Triangles that it would have.
+        /// Number of triangles.
         triangles: u64,
-        /// The step with which they are few enough to work with.
+        /// Step that gives a workable number of triangles, cells.
         step: u32,
     },
 }

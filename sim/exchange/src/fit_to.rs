@@ -1,5 +1,5 @@
-//! A picture as large as a canvas: the mean of an area where it becomes smaller, linear between pixels
-//! where it becomes larger; in linear light.
+//! A picture resampled to a canvas: the mean of an area where it becomes smaller, linear between pixels where it
+//! becomes larger; in linear light.
 
 use std::collections::VecDeque;
 
@@ -14,20 +14,20 @@ use crate::read_image::Image;
 pub struct Raster {
     /// Cells across and up.
     pub cells: [usize; 2],
-    /// Encoded sRGB, row after row from the lowest.
+    /// Encoded sRGB, row by row from the lowest.
     pub rgb: Vec<[u8; 3]>,
 }
 
-/// Range of a picture that is taken along one of its sides.
+/// Range of a picture that is used along one of its sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cut {
     /// Pixels of the picture.
     pixels: usize,
-    /// Cells that are made of them.
+    /// Number of cells made from them.
     cells: usize,
-    /// Where the first cell begins, pixels.
+    /// Start of the first cell, pixels.
     from: f64,
-    /// Pixels of a cell.
+    /// Pixels per cell.
     scale: f64,
 }
 
@@ -43,7 +43,6 @@ fn cover(pixels: [usize; 2], cells: [usize; 2]) -> [Cut; 2] {
     })
 }
 
-/// All of a picture.
 fn whole(pixels: [usize; 2], cells: [usize; 2]) -> [Cut; 2] {
     [0, 1].map(|i| Cut {
         pixels: pixels[i],
@@ -53,10 +52,10 @@ fn whole(pixels: [usize; 2], cells: [usize; 2]) -> [Cut; 2] {
     })
 }
 
-/// Shares below this one are rounding errors.
+/// Least share; smaller ones are rounding errors.
 const LEAST_SHARE: f64 = 1e-9;
 
-/// The pixels that make a cell, from the first on, with their shares.
+/// Pixels of a cell, from the first on, with their shares.
 #[derive(Clone, Debug, PartialEq)]
 struct Taps {
     first: usize,
@@ -82,7 +81,7 @@ impl Cut {
         let high = (self.from + (cell as f64 + 1.0) * self.scale).min(self.pixels as f64);
         let share = |pixel: usize| high.min(pixel as f64 + 1.0) - low.max(pixel as f64);
         let mut first = (low as usize).min(last);
-        // A cell that begins at the next pixel may lie a rounding error before it.
+        // A cell that begins at the next pixel may be a rounding error before it.
         first += usize::from(first < last && share(first) <= LEAST_SHARE);
         let covered = (first..self.pixels).map(share);
         let mut shares: Vec<f64> = covered.take_while(|share| *share > LEAST_SHARE).collect();
@@ -95,8 +94,8 @@ impl Cut {
     }
 }
 
-/// Fits rows of `C` channels, a row at a time from the top: `source` gives a row of the picture, `sink`
-/// takes one of the canvas. Each row of the picture is asked for once.
+/// Resamples rows of `C` channels, one at a time from the top: `source` reads a row of the picture, `sink` takes one of
+/// the canvas. Each row of the picture is read once.
 fn resample<const C: usize>(
     [across, down]: [Cut; 2],
     source: &mut dyn FnMut(usize, &mut Vec<[f32; C]>),
@@ -143,11 +142,9 @@ fn mean<const C: usize>(taps: &Taps, row: &[[f32; C]]) -> [f64; C] {
     sum
 }
 
-/// The colours of a canvas's cells after a picture: it covers the canvas, centred, and what is too much
-/// is cut off.
+/// The colours of a canvas's cells from a picture that covers it, centred, with the excess cut off.
 ///
-/// # Errors
-/// [`ImportError::Canvas`] for more than 67 million cells.
+/// # Errors [`ImportError::Canvas`] for more than 67 million cells.
 pub fn colours(image: &Image, cells: [usize; 2]) -> Result<Raster, ImportError> {
     let [across, up] = cells.map(|cells| cells.max(1));
     if across as u64 * up as u64 > MOST_PIXELS {
@@ -173,10 +170,9 @@ pub fn colours(image: &Image, cells: [usize; 2]) -> Result<Raster, ImportError> 
     })
 }
 
-/// All of a picture as heights at `size` pixels, 0 to 65535, row after row from the top.
+/// A whole picture as heights at `size` pixels, 0 to 65535, row by row from the top.
 ///
-/// # Errors
-/// As [`colours`].
+/// # Errors As [`colours`].
 pub fn heights(image: &Image, size: [usize; 2]) -> Result<Vec<u16>, ImportError> {
     let [across, down] = size.map(|pixels| pixels.max(1));
     if across as u64 * down as u64 > MOST_PIXELS {
@@ -198,7 +194,7 @@ pub fn heights(image: &Image, size: [usize; 2]) -> Result<Vec<u16>, ImportError>
 mod tests {
     use super::*;
 
-    /// A grey picture of these values, fitted by area and line.
+    /// A grey picture of these values, resampled.
     fn fitted(size: [usize; 2], values: &[f32], cut: [Cut; 2]) -> Vec<f32> {
         let mut out = Vec::new();
         let mut asked = vec![0; size[1]];

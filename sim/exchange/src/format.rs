@@ -1,4 +1,4 @@
-//! An export of any format, as a command line or a window asks for it.
+//! Options of an export in any format, for a command line or a window.
 
 use std::io::{Seek, Write};
 use std::path::Path;
@@ -23,14 +23,14 @@ pub enum Format {
     Ora,
     /// Heights as a grey PNG of 16 bits.
     Height,
-    /// A solid for relief printing.
+    /// A solid with its colours: binary glTF.
     Stl,
     /// The same with its colours: binary glTF.
     Glb,
 }
 
 impl Format {
-    /// All, with their names: that of a file that ends in one, but for heights.
+    /// All formats, with their names: a file's extension, except for heights.
     pub const ALL: [(&'static str, Self); 6] = [
         ("png", Self::Png),
         ("exr", Self::Exr),
@@ -40,14 +40,14 @@ impl Format {
         ("glb", Self::Glb),
     ];
 
-    /// The format of that name.
+    /// The format with this name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let same = |(known, _): &&(&str, Self)| known.eq_ignore_ascii_case(name);
         Self::ALL.iter().find(same).map(|(_, format)| *format)
     }
 
-    /// The format that a file's name says.
+    /// The format of a file by its name.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?;
@@ -55,7 +55,7 @@ impl Format {
     }
 }
 
-/// Contents of an export.
+/// Options of an export.
 #[derive(Clone, Debug)]
 pub struct Order {
     /// The format.
@@ -66,19 +66,18 @@ pub struct Order {
     pub depth: Depth,
     /// Conversion of a PNG from the working space.
     pub export: Export,
-    /// Thickness of a solid under its lowest place, mm.
+    /// Thickness of a solid under its lowest point, mm.
     pub base_mm: f64,
     /// Factor on the heights of a solid.
     pub exaggeration: f64,
-    /// Cells from one point of a solid to the next; as [`solid_step`] proposes if absent.
+    /// Cells between points of a solid; [`solid_step`] if absent.
     pub step: Option<u32>,
 }
 
 impl Order {
-    /// Writes a painting; returns what is to be known of the file, in words that may be none.
+    /// Writes a painting; returns a note about the file, which may be empty.
     ///
-    /// # Errors
-    /// [`ExchangeError`].
+    /// # Errors [`ExchangeError`].
     pub fn write(
         &self,
         painting: &mut Painting,

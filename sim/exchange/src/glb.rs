@@ -1,7 +1,7 @@
 //! A painting as a solid with its colours, in binary glTF (Khronos Group 2021, *glTF 2.0 Specification*).
 //!
-//! Metres; x right and y up along the surface, z out of it, so that the painting stands and looks at a viewer. Colours are
-//! those of the paint as it is seen from above, unlit, linear sRGB. Normals of the surface are smooth; walls and bottom have
+//! Metres; x right and y up along the surface, z out of it, so that the painting stands and faces a viewer. Colours are
+//! those of the paint seen from above, unlit, linear sRGB. Normals of the surface are smooth; walls and bottom have
 //! their own vertices.
 
 use std::io::{BufWriter, Write};
@@ -16,11 +16,11 @@ use crate::solid::{
 };
 use crate::surface::{Progress, Steps};
 
-/// Bytes of a vertex: place and normal as 3 floats, red, green, blue and alpha as 16 bits.
+/// Size of a vertex, bytes: place and normal as 3 floats, red, green, blue and alpha as 16 bits.
 const VERTEX: u64 = 32;
-/// Bytes of a triangle: three vertex indices.
+/// Size of a triangle, bytes: three vertex indices.
 const TRIANGLE: u64 = 12;
-/// Triangles at most: with all that belongs to them a file has at most 4 GiB.
+/// Greatest number of triangles, for a file of at most 4 GiB.
 const MAX_TRIANGLES: u64 = u32::MAX as u64 / (VERTEX + TRIANGLE) - 1000;
 /// Gloss of oil paint, roughly.
 const ROUGHNESS: f64 = 0.4;
@@ -106,7 +106,7 @@ fn write_head(solid: &Solid<'_>, to: &mut impl Write) -> Result<(), ExchangeErro
         ],
         "buffers": [{ "byteLength": places + numbers }],
     });
-    // The generator first: by it an export knows its own files.
+    // The generator comes first: an export recognises its own files by it.
     let asset = r#""asset":{"generator":"Maulstick","version":"2.0"}"#;
     let rest = rest.to_string();
     let mut json = format!("{{{asset},{}", &rest[1..]).into_bytes();
@@ -143,7 +143,7 @@ fn vertex(at: Point, normal: Point, colour: Colour) -> [u8; VERTEX as usize] {
     bytes
 }
 
-/// A vertex that may get more facets.
+/// A vertex that may still get facets.
 struct PendingVertex {
     at: Point,
     colour: Colour,
@@ -161,7 +161,7 @@ struct VertexSink<W: Write> {
     to: BufWriter<W>,
 }
 
-/// The normal itself; up for that of a facet without area.
+/// The normal itself; upward for a facet without area.
 fn or_up(normal: Point) -> Point {
     match normal {
         [0.0, 0.0, 0.0] => [0.0, 0.0, 1.0],

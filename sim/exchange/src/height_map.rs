@@ -9,12 +9,12 @@ use maulstick_painting::Painting;
 use crate::ExchangeError;
 use crate::surface::{Progress, Steps, banded, check_whole};
 
-/// From the lowest to the highest place of a surface, m above the highest peaks of its bare ground.
+/// Range of the heights of a surface, m above the highest peaks of its bare ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeightRange {
-    /// The lowest.
+    /// Lowest height, m.
     pub least_m: f32,
-    /// The highest.
+    /// Greatest height, m.
     pub greatest_m: f32,
 }
 
@@ -40,7 +40,7 @@ impl HeightRange {
         Ok(range)
     }
 
-    /// 0 for the lowest place, 65535 for the highest; 0 where all is level.
+    /// 0 for the lowest height, 65535 for the highest; 0 where all is level.
     fn level(&self, height: f32) -> u16 {
         let [height, least, greatest] = [height, self.least_m, self.greatest_m].map(f64::from);
         if greatest <= least {
@@ -50,11 +50,10 @@ impl HeightRange {
     }
 }
 
-/// Writes the heights of a surface as a grey PNG of 16 bits, linear from the least to the greatest,
-/// which are returned, and stand in its `tEXt`, in micrometres. `pHYs` says how large a cell is.
+/// Writes the heights of a surface as a grey PNG of 16 bits, linear between the range that is returned and stored in
+/// its `tEXt`, in micrometres. `pHYs` has the size of a cell.
 ///
-/// # Errors
-/// [`ExchangeError`].
+/// # Errors [`ExchangeError`].
 pub fn write_height_map(
     painting: &mut Painting,
     surface: u32,

@@ -2,45 +2,45 @@
 
 use maulstick_painting::EditError;
 
-/// Most pixels of a picture across and down.
+/// Greatest number of pixels of a picture across and down.
 pub const MOST_SIDE: u32 = 20_000;
 
-/// A picture that cannot be imported.
+/// Errors of importing a picture.
 #[derive(Debug, thiserror::Error)]
 pub enum ImportError {
     /// The file cannot be read.
     #[error("the file cannot be read: {0}")]
     File(#[source] std::io::Error),
-    /// It holds no picture, or one that is damaged.
+    /// The file is not a picture, or is damaged.
     #[error("this is not an intact PNG, JPEG, TIFF, OpenEXR or OpenRaster picture: {0}")]
     NotAPicture(String),
-    /// It is of a kind of its format that is not read.
+    /// Its variant of the format is not supported.
     #[error("pictures of this kind are not read: {0}")]
     Unsupported(String),
-    /// A pixel is no number: across and down from the upper left one, which is 0, 0.
+    /// A pixel is not a number: across and down from the upper left one, which is 0, 0.
     #[error("pixel {0}, {1} from the upper left corner is not a number (NaN)")]
     NotANumber(usize, usize),
-    /// Metadata that take too much memory, with the limit, MB.
+    /// Metadata exceed the limit of memory, MB.
     #[error("the metadata of the file take more than {0} MB")]
     Beside(usize),
-    /// It is larger than pictures may be.
+    /// Its width or height exceeds the limit.
     #[error(
         "a picture of {0}×{1} pixels is too large: import one of at most {MOST_SIDE} pixels either way"
     )]
     TooLarge(u32, u32),
-    /// It takes more memory than it may.
+    /// Its size in memory exceeds the limit.
     #[error("a picture of {0}×{1} pixels takes too much memory; make it smaller")]
     Memory(u32, u32),
-    /// The canvas has more cells than a picture is fitted to.
+    /// The canvas has more cells than the limit of resampling.
     #[error("a canvas of {0}×{1} cells is too large for a picture: it may have 67 million cells")]
     Canvas(usize, usize),
     /// The film is too thin or too thick.
-    #[error("a film of {0} µm cannot be laid; choose 1 to 5000 µm")]
+    #[error("a film cannot be {0} µm thick; choose 1 to 5000 µm")]
     Thickness(f64),
-    /// There is nothing to mix, or too much.
+    /// The number of paints is 0 or exceeds the limit.
     #[error("a picture cannot be mixed from {0} paints; choose 1 to 16")]
     Paints(usize),
-    /// The painting refuses.
+    /// The painting rejects it.
     #[error(transparent)]
     Refused(EditError),
     /// It cannot be written as a PNG.

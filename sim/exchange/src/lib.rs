@@ -11,19 +11,19 @@
 //! | [`write_open_exr`] | unlit colour, height and the thickness of each paint: OpenEXR |
 //! | [`write_open_raster`] | flat colour, a layer for each dry layer: OpenRaster |
 //! | [`write_height_map`] | height: grey PNG of 16 bits; [`HeightRange`] says what black and white are |
-//! | [`write_stl`] | a solid to print, with what overhangs: STL; [`solid_step`] proposes how fine |
+//! | [`write_stl`] | a solid to print, with overhangs: STL; [`solid_step`] proposes the resolution |
 //! | [`write_glb`] | the same with colours: binary glTF |
 //!
-//! [`Order`] is any of these; [`small_picture`] is for the eye alone, and [`film`] draws frame after frame. Errors are
-//! [`ExchangeError`]; [`Progress`] hears how far an export is.
+//! [`Order`] is any of these; [`small_picture`] is a thumbnail, and [`film`] draws frame after frame. Errors are
+//! [`ExchangeError`]; [`Progress`] reports the progress of an export.
 //!
-//! An import makes of a picture an underpainting, a ground or a tooth:
+//! An import makes an underpainting, a ground or a tooth from a picture:
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`read_image`] | pictures from files, a row at a time |
 //! | [`fit_to`] | a picture as large as a canvas |
-//! | [`embed`] | pictures as a painting holds them: grounds and teeth |
+//! | [`embed`] | pictures for a painting's grounds and teeth |
 //! | [`underpaint`] | a picture as paint |
 //!
 //! Its errors are [`ImportError`].

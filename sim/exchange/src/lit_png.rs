@@ -10,12 +10,11 @@ use maulstick_painting::picture::lit_drawing;
 use crate::ExchangeError;
 use crate::surface::{Progress, Steps, check_whole};
 
-/// Writes a surface as it looks under the scene's lamp, a pixel a cell, for the profile and gamut of
-/// `export`: the profile is embedded, and `pHYs` says how large a cell is. With 8 bits a channel these
-/// are the bytes of [`Picture::encode_png`](maulstick_appearance::picture::Picture::encode_png).
+/// Writes a surface under the scene's lamp, a pixel a cell, for the profile and gamut of
+/// `export`: the profile is embedded, and `pHYs` has the size of a cell. With 8 bits a channel these are the bytes of
+/// [`Picture::encode_png`](maulstick_appearance::picture::Picture::encode_png).
 ///
-/// # Errors
-/// [`ExchangeError`].
+/// # Errors [`ExchangeError`].
 pub fn write_lit_png(
     painting: &mut Painting,
     surface: u32,

@@ -5,8 +5,7 @@ use maulstick_painting::{Painting, picture};
 
 use crate::ExchangeError;
 
-/// Hears how far an export is: steps done, and all there are. It is called with what is done from 0 to
-/// all.
+/// Callback for the progress of an export: steps done, from 0 to all, and all steps.
 pub type Progress<'a> = &'a mut dyn FnMut(u64, u64);
 
 /// Counts the steps of an export.
@@ -24,7 +23,7 @@ impl<'a> Steps<'a> {
         Self { tell, done: 0, all }
     }
 
-    /// One more is done.
+    /// Counts a step as done.
     pub(crate) fn step(&mut self) {
         self.done += 1;
         (self.tell)(self.done, self.all);
@@ -36,7 +35,7 @@ pub(crate) fn banded(painting: &mut Painting, surface: u32) -> Result<Banded<'_>
     picture::banded(painting, surface).ok_or(ExchangeError::NoSurface(surface))
 }
 
-/// Says so where a page could not be read: what was written lacks paint then.
+/// Checks that all pages could be read; otherwise the export lacks paint.
 pub(crate) fn check_whole(painting: &Painting) -> Result<(), ExchangeError> {
     match painting.pager().fault() {
         Some(what) => Err(ExchangeError::Damaged(what.to_owned())),

@@ -14,11 +14,11 @@ use maulstick_painting::Painting;
 use maulstick_painting::picture::flat_drawing;
 use maulstick_types::paint::TILE;
 
-/// Pixels of the longer side of a thumbnail in a file, at most.
+/// Greatest side of a thumbnail in a file, pixels.
 pub(crate) const SIDE: usize = 256;
 
-/// A surface with its colours alone, in sRGB, with at most `side` pixels either way; none if there is no
-/// such surface.
+/// A surface with its colours alone, in sRGB, with at most `side` pixels either way; `None` if there is no such
+/// surface.
 pub fn small_picture(painting: &mut Painting, surface: u32, side: usize) -> Option<Picture> {
     let export = Export::default();
     let drawing = flat_drawing(painting, surface, &export)?;
@@ -35,17 +35,17 @@ pub fn small_picture(painting: &mut Painting, surface: u32, side: usize) -> Opti
     Some(Picture::srgb(width, height, small.bytes()))
 }
 
-/// Small pictures of paintings that share tiles, as the states of a history do: of each tile there are a few colours, so
-/// that a picture costs what differs from those before it.
+/// Small pictures of paintings that share tiles, like the states of a history: a few colours of each tile are cached,
+/// so that a picture costs only its differences from earlier ones.
 #[derive(Debug, Default)]
 pub struct HistoryPictures {
     tiles: HashMap<TileKey, Blocks>,
-    /// Pictures so far.
+    /// Number of pictures so far.
     drawn: u64,
 }
 
-/// Key of a tile's colours: its place, its wet and its dried paint, the look of the painting, and how
-/// many cells a block has across.
+/// Key of a tile's colours: its place, its wet and its dried paint, the look of the painting, and the cells across a
+/// block.
 type TileKey = (TileId, Option<u64>, Option<u64>, i64, usize);
 
 /// Means of linear light of the blocks of a tile, rows from the top.
@@ -56,13 +56,13 @@ struct Blocks {
     used: u64,
 }
 
-/// Cells of a block across, at most.
+/// Greatest number of cells across a block.
 const BLOCK: usize = 8;
-/// Colours that are kept besides twice those of a whole surface: 12 MB.
-const SPARE: usize = 1 << 20;
+/// Number of cached colours beyond twice those of a whole surface: 12 MB.
+const SPARE_COLOURS: usize = 1 << 20;
 
 impl HistoryPictures {
-    /// A surface with its colours alone, in sRGB, with at most `side` pixels either way; none if there is no such
+    /// A surface with its colours alone, in sRGB, with at most `side` pixels either way; `None` if there is no such
     /// surface.
     pub fn draw(&mut self, painting: &mut Painting, surface: u32, side: usize) -> Option<Picture> {
         let print = painting.look().print();
@@ -103,7 +103,7 @@ impl HistoryPictures {
                 .for_each(|row| small.add_light(row));
         }
         let kept: usize = self.tiles.values().map(|own| own.light.len()).sum();
-        if kept > 2 * shown + SPARE {
+        if kept > 2 * shown + SPARE_COLOURS {
             let drawn = self.drawn;
             self.tiles.retain(|_, own| own.used == drawn);
         }
@@ -147,7 +147,7 @@ pub(crate) struct Thumbnail {
 }
 
 impl Thumbnail {
-    /// Of a picture of this size, across and down, with at most `most` pixels along each side.
+    /// A thumbnail of a picture of this size, across and down, with at most `most` pixels along each side.
     pub(crate) fn new(from: [usize; 2], most: usize) -> Self {
         let longest = from[0].max(from[1]);
         let size = from.map(|side| {
@@ -173,7 +173,7 @@ impl Thumbnail {
         self.size
     }
 
-    /// Takes the next rows, of sRGB bytes.
+    /// Adds the next rows, of sRGB bytes.
     pub(crate) fn add(&mut self, rows: &[u8]) {
         let [width, height] = self.from;
         for row in rows.chunks_exact(width * 3) {
@@ -190,7 +190,7 @@ impl Thumbnail {
         }
     }
 
-    /// Takes the next row, of linear light.
+    /// Adds the next row, of linear light.
     fn add_light(&mut self, row: &[[f32; 3]]) {
         let y = self.rows * self.size[1] / self.from[1];
         for (x, pixel) in row.iter().enumerate() {

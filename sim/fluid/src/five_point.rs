@@ -102,8 +102,8 @@ impl FivePoint {
         }
     }
 
-    /// Solves for `x`, which begins as a guess, until the residual is `tolerance` of the right side, or for `most`
-    /// iterations; returns how many it took.
+    /// Solves for `x`, whose initial value is a guess, until the residual is `tolerance` of the right side, or for
+    /// `most` iterations; returns their number.
     pub(crate) fn solve(&self, b: &[f64], x: &mut [f64], tolerance: f64, most: usize) -> usize {
         let inverse = self.factor();
         let mut r = vec![0.0; b.len()];

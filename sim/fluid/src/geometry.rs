@@ -61,7 +61,7 @@ pub(crate) struct Geometry {
     /// Velocity of the solid at each face, by axis, m/s: around the probe, its own; elsewhere 0.
     pub(crate) rigid: [Vec<f64>; 2],
     /// Coupling of each face with the next one along x and y, by axis: 1 in the fluid, the inverse of the open share
-    /// where a wall cuts the link, for viscous stress goes over what is open alone.
+    /// where a wall cuts the link, because viscous stress acts on the open part alone.
     pub(crate) links: [[Vec<f64>; 2]; 2],
     /// Content of each cell, by its middle.
     pub(crate) media: Vec<Medium>,

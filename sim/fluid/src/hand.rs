@@ -36,7 +36,7 @@ pub struct HandTick {
     pub state: ProbeState,
     /// Drag, force across and torque as the solver last gave them, N/m and N·m/m.
     pub raw: [f64; 3],
-    /// The same filtered.
+    /// The filtered force and torque.
     pub filtered: [f64; 3],
 }
 

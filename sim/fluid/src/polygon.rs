@@ -78,7 +78,7 @@ impl Placed {
         [ends(-1.0), ends(1.0)]
     }
 
-    /// At most the distance of a place from the outline, m; positive within, and exact near it.
+    /// A lower bound of the distance of a place from the outline, m; positive within, and exact near it.
     fn depth(&self, place: [f64; 2], near_m: f64) -> f64 {
         let [x, y] = [place[0] - self.middle[0], place[1] - self.middle[1]];
         let off = (x * x + y * y).sqrt();

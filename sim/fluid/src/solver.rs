@@ -1,9 +1,9 @@
 //! Navier-Stokes equations around a probe in two dimensions (Baxter 2004, § 8.8.4; Stam 1999): semi-Lagrangian advection,
 //! implicit viscosity, Chorin's projection, on a staggered grid. No step is too long for it.
 //!
-//! A probe that is [`Boundary::Covered`] is fluid of infinite viscosity (links conduct by the harmonic mean along them)
-//! and of no gap (the projection weighs faces by their open share; Batty, Bertails and Bridson 2007). All shares change
-//! continuously with the probe's place, so the force does.
+//! A [`Boundary::Covered`] probe is fluid of infinite viscosity (links conduct by the harmonic mean along them) without
+//! a gap (the projection weighs faces by their open share; Batty, Bertails and Bridson 2007). All shares, and so the
+//! force, change continuously with the probe's place.
 
 use crate::five_point::FivePoint;
 use crate::geometry::{Boundary, Geometry, ProbeState, Vessel};
@@ -13,9 +13,9 @@ use crate::stress::{Fluid, Medium, StaggeredFields, Wrench, face_stresses};
 
 /// Residual of a solve by its right side.
 const TOLERANCE: f64 = 1e-6;
-/// Iterations of a solve at most.
+/// Greatest number of iterations of a solve.
 const ITERATIONS: usize = 2000;
-/// A face with less open than this lets nothing through.
+/// Least open share of a face that lets fluid through.
 const LEAST_OPEN: f64 = 1e-6;
 
 /// Grid, vessel, fluid and probe of a bench.
@@ -29,7 +29,7 @@ pub struct Bench {
     pub fluid: Fluid,
     /// The probe's shape.
     pub shape: Shape,
-    /// Its representation on the grid.
+    /// Boundary of the probe on the grid.
     pub boundary: Boundary,
 }
 
@@ -73,7 +73,7 @@ impl Flow {
         }
     }
 
-    /// Lets `dt_s` pass, at whose end the probe is as in `state`.
+    /// Advances by `dt_s`, at the end of which the probe is as in `state`.
     pub fn step(&mut self, state: ProbeState, dt_s: f64) {
         let Bench {
             grid,
@@ -109,7 +109,7 @@ impl Flow {
         }
     }
 
-    /// Each velocity comes from where its fluid was (Stam 1999), found at the middle of its way.
+    /// Advects velocities: each is traced back to its origin (Stam 1999), with the velocity at the middle of its path.
     fn advect(&mut self, dt_s: f64) {
         let grid = self.bench.grid;
         let old = &self.velocity;
@@ -261,15 +261,15 @@ impl Flow {
         self.press(&change, dt_s);
         for (at, pressure) in self.pressure.iter_mut().enumerate() {
             *pressure += change[at];
-            // Within the probe there is none.
+            // Within the probe there is no equation.
             if system.diagonal[at] == 0.0 {
                 *pressure = 0.0;
             }
         }
     }
 
-    /// Force and torque about the probe's place, by how its outline is put on the grid: of whole cells from the stresses
-    /// on their faces, else from the momentum that links and pressure bring into it.
+    /// Force and torque about the probe's place: with whole cells from the stresses on their faces, otherwise from the
+    /// momentum that links and pressure bring into it.
     #[must_use]
     pub fn wrench(&self) -> Wrench<2> {
         match self.bench.boundary {

@@ -9,16 +9,16 @@
 //! P_y = −ρ·p + 2μ·∂v/∂y      ∂v/∂y = (v_next − v_face)/Δy
 //! ```
 //!
-//! The printed normal points into the probe: by it drag pushes the hand on.
+//! The printed normal points into the probe: with it drag would accelerate the hand.
 
 /// Content of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Medium {
     /// Part of the probe.
     Probe,
-    /// Fluid.
+    /// Cell filled with fluid.
     Fluid,
-    /// Air or another solid: nothing of it acts on the probe.
+    /// Air or another solid, without effect on the probe.
     Other,
 }
 
@@ -39,7 +39,7 @@ pub trait StaggeredFields<const D: usize> {
     fn wall_velocity(&self, place: [f64; D]) -> [f64; D];
 }
 
-/// The fluid's properties.
+/// Properties of the fluid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fluid {
     /// Density ρ, kg/m³.

@@ -28,7 +28,7 @@ const ARC_MIDDLE_M: [f64; 2] = [0.5, 0.3];
 /// Duration of the arc's sweep there and back, s.
 pub const ARC_S: f64 = 4.0;
 
-/// The probe on its arc at a time: it begins at rest, sweeps the arc, comes to rest at its end, and sweeps it back.
+/// The probe on its arc at a time: it starts from rest, sweeps the arc, stops at its end, and sweeps it back.
 #[must_use]
 pub fn arc(time_s: f64) -> ProbeState {
     let [radius, half, turn] = ARC;
@@ -47,7 +47,7 @@ pub fn arc(time_s: f64) -> ProbeState {
     }
 }
 
-/// Direction of the arc's way there at a place on it.
+/// Direction of the forward motion at a place of the arc.
 fn tangent(state: &ProbeState) -> [f64; 2] {
     let [radius, ..] = ARC;
     let [x, y] = ARC_MIDDLE_M;
@@ -79,7 +79,7 @@ pub struct Sample {
     pub time_s: f64,
     /// The probe.
     pub state: ProbeState,
-    /// Force along the arc's way there, N/m: drag is against the motion.
+    /// Force along the arc's forward direction, N/m: drag is against the motion.
     pub drag_n: f64,
     /// Force to the left of it, N/m.
     pub across_n: f64,
@@ -87,7 +87,7 @@ pub struct Sample {
     pub torque_n_m: f64,
 }
 
-/// The sweep along the arc, a sample a step; `done` hears how many steps are.
+/// The sweep along the arc, a sample a step; `done` receives the number of steps done.
 #[must_use]
 pub fn arc_sweep(cells: usize, boundary: Boundary, mut done: impl FnMut(usize)) -> Vec<Sample> {
     let mut flow = Flow::new(bench(cells, boundary, FLUID), arc(0.0));
@@ -102,7 +102,7 @@ pub fn arc_sweep(cells: usize, boundary: Boundary, mut done: impl FnMut(usize)) 
         .collect()
 }
 
-/// Steps of [`arc_sweep`].
+/// Number of steps of [`arc_sweep`].
 #[must_use]
 pub fn arc_steps() -> usize {
     (ARC_S * RATE_HZ).round() as usize
@@ -129,10 +129,10 @@ pub struct Noise {
     pub noise_n: f64,
 }
 
-/// Steps of [`noise`] that count, and those before them, in which the flow forms.
+/// Number of measured steps of [`noise`], and of those before them, in which the flow develops.
 const STEPS: usize = 120;
 const RUN_UP: usize = 24;
-/// Way in these steps, m, across the grid at an angle whose tangent no grid has.
+/// Path of these steps, m, across the grid at an angle with an irrational tangent.
 const WAY_M: f64 = 0.24;
 const WAY_RAD: f64 = 0.36;
 /// Steady speed, m/s; the flow is viscous (Re 1 by the square).
@@ -178,7 +178,7 @@ pub fn noise(cells: usize, boundary: Boundary) -> Noise {
     }
 }
 
-/// Mean of some values, and the root mean square of what is left of them without their polynomial of degree [`SMOOTH`].
+/// Mean of values, and the root mean square of their residual about the polynomial of degree [`SMOOTH`].
 fn about_smooth(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;

@@ -1,8 +1,8 @@
-//! Buffers that are used again from batch to batch and grow as they must.
+//! Buffers that are reused from batch to batch and grow as needed.
 
 use crate::device::{Device, GpuError};
 
-/// A buffer of the device.
+/// A growing buffer of the device.
 #[derive(Debug)]
 pub struct Arena {
     name: &'static str,
@@ -11,7 +11,7 @@ pub struct Arena {
 }
 
 impl Arena {
-    /// An empty one.
+    /// A buffer without memory yet.
     pub fn new(name: &'static str, usage: wgpu::BufferUsages) -> Self {
         Self {
             name,
@@ -20,11 +20,11 @@ impl Arena {
         }
     }
 
-    /// The buffer, of at least `bytes`; what it held may be gone.
+    /// The buffer, of at least `bytes`; growing discards its contents.
     pub fn of(&mut self, gpu: &Device, bytes: u64) -> &wgpu::Buffer {
         let large_enough = |buffer: &wgpu::Buffer| buffer.size() >= bytes;
         if !self.buffer.as_ref().is_some_and(large_enough) {
-            // What is too small goes first, so that there is room.
+            // A buffer that is too small is dropped first, to make room.
             self.buffer = None;
         }
         self.buffer.get_or_insert_with(|| {
@@ -37,14 +37,14 @@ impl Arena {
         })
     }
 
-    /// The buffer with `parts` in it, one after the other.
+    /// The buffer, filled with the concatenated `parts`.
     pub fn filled(&mut self, gpu: &Device, parts: &[&[u8]]) -> Result<&wgpu::Buffer, GpuError> {
         let bytes: usize = parts.iter().map(|part| part.len()).sum();
         let buffer = self.of(gpu, bytes as u64);
         let Some(size) = wgpu::BufferSize::new(bytes as u64) else {
             return Ok(buffer);
         };
-        // None where the driver has no room; the error scope knows.
+        // Absent where the driver is out of memory; the error scope reports it.
         let mut view = gpu
             .queue
             .write_buffer_with(buffer, 0, size)
@@ -68,7 +68,7 @@ pub fn read<T>(
     let slice = buffer.slice(..bytes);
     let (send, mapped) = std::sync::mpsc::channel();
     slice.map_async(wgpu::MapMode::Read, move |result| {
-        // Nobody listens where the wait failed, and then it failed with a reason.
+        // The receiver is gone where the wait failed, which reports its own error.
         send.send(result.is_ok()).ok();
     });
     gpu.wait()?;

@@ -4,7 +4,7 @@ use maulstick_optics::Studio;
 
 use crate::stage::Stage;
 
-/// The stage.
+/// Baking of films.
 pub(crate) static BAKE_FILMS: Stage = Stage {
     name: "bake_films",
     source: concat!(

@@ -1,4 +1,4 @@
-//! Tiles as the shaders take them.
+//! Tiles in the layout of the shaders.
 
 use bytemuck::{Pod, Zeroable, cast_slice};
 use maulstick_optics::backend::TILE_CELLS;
@@ -16,21 +16,21 @@ struct TileRecord {
     under_cell: u32,
 }
 
-/// Wavelengths that a shader computes together.
+/// Number of wavelengths that a shader computes together.
 const QUAD: usize = 4;
 
-/// The inputs of a stage, parts of a buffer one after the other.
+/// Inputs of a stage, as concatenated parts of buffers.
 pub(crate) struct Batch<'a> {
     records: Vec<TileRecord>,
     optics: Vec<[f32; QUAD]>,
     /// Planes of thickness.
     pub(crate) thickness: Vec<&'a [u8]>,
-    /// What lies under the films.
+    /// Reflectance of the ground under the films.
     pub(crate) under: Vec<&'a [u8]>,
 }
 
 impl<'a> Batch<'a> {
-    /// All of `tiles`, which fit the studio.
+    /// A batch of all `tiles`, which fit the studio.
     pub(crate) fn new(studio: &Studio, tiles: &[FilmPlanes<'a>]) -> Self {
         let samples = studio.wavelengths();
         let quads = (0..samples).step_by(QUAD);
@@ -87,18 +87,18 @@ impl<'a> Batch<'a> {
         batch
     }
 
-    /// What tells where each tile's parts are.
+    /// Offsets of each tile's parts.
     pub(crate) fn records(&self) -> &[u8] {
         cast_slice(&self.records)
     }
 
-    /// Primaries, K and S.
+    /// Primaries, absorption K and scattering S.
     pub(crate) fn optics(&self) -> &[u8] {
         cast_slice(&self.optics)
     }
 }
 
-/// Bytes of the largest buffer that a tile needs a part of, where a stage makes `planes` of it.
+/// Size in bytes of the largest buffer that a tile uses, for a stage with `planes` output planes.
 fn largest(studio: &Studio, films: &FilmPlanes<'_>, planes: usize) -> usize {
     let under = match films.under {
         Under::Even(_) => 0,
@@ -107,7 +107,7 @@ fn largest(studio: &Studio, films: &FilmPlanes<'_>, planes: usize) -> usize {
     planes.max(films.paints.len()).max(under) * TILE_CELLS * size_of::<f32>()
 }
 
-/// How many of the first of `tiles` fit buffers of `bytes`; one at least.
+/// Number of leading `tiles` that fit buffers of `bytes`, at least one.
 pub(crate) fn fitting(
     studio: &Studio,
     tiles: &[FilmPlanes<'_>],

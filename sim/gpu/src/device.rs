@@ -1,5 +1,5 @@
-//! The graphics device. Whatever happens to it becomes a value: wgpu's own answer to an error that
-//! nobody asked about, and to a device lost while someone waits for it, is to panic.
+//! The graphics device, with its errors as values: by default wgpu panics on an uncaptured error, and on a device
+//! lost during a wait.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -8,45 +8,45 @@ use std::time::Duration;
 
 use pollster::block_on;
 
-/// Longest that a batch may take. A driver gives a hung device up after 2 to 10 s.
+/// Longest duration of a batch. A driver gives up a hung device after 2 to 10 s.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Which adapters will do.
+/// Policy of choosing an adapter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Choice {
-    /// Only a real graphics processor: one that is emulated is slower than the processor itself.
+    /// Only a real graphics processor: an emulated one is slower than the processor itself.
     #[default]
     Auto,
-    /// Any, also an emulated one such as lavapipe.
+    /// Any adapter, including an emulated one such as lavapipe.
     Forced,
 }
 
-/// Why the device cannot be used.
+/// Errors of the graphics device.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GpuError {
-    /// There is none of the kind that was asked for.
-    #[error("there is no graphics adapter that would do: {0}")]
+    /// No adapter of the requested kind.
+    #[error("no suitable graphics adapter: {0}")]
     None(String),
-    /// It was lost, or no longer answers.
+    /// The device was lost, or does not respond.
     #[error("it was lost: {0}")]
     Lost(String),
-    /// Its memory is full.
+    /// The device is out of memory.
     #[error("its memory is full")]
     Memory,
-    /// A window of so many cells needs more bytes than the device has in one piece.
+    /// A window that needs a larger buffer than the device allows.
     #[error(
         "a window of {}x{}x{} cells needs {} MiB in one piece, and it has at most {}: choose larger cells or a smaller window",
         cells[0], cells[1], cells[2], needs.div_ceil(1 << 20), most >> 20
     )]
     Window {
-        /// Cells of each axis.
+        /// Number of cells along each axis.
         cells: [usize; 3],
-        /// Bytes that it needs.
+        /// Bytes needed.
         needs: u64,
-        /// Bytes that there are.
+        /// Bytes allowed.
         most: u64,
     },
-    /// The driver refused something.
+    /// A request rejected by the driver.
     #[error("its driver refuses: {0}")]
     Refused(String),
 }
@@ -54,16 +54,16 @@ pub enum GpuError {
 /// An open device.
 #[derive(Clone, Debug)]
 pub struct Device {
-    /// Makes things.
+    /// Logical device, which creates resources.
     pub device: wgpu::Device,
-    /// Takes work, in order.
+    /// Queue of submissions, executed in order.
     pub queue: wgpu::Queue,
     info: wgpu::AdapterInfo,
     lost: Arc<Mutex<Option<String>>>,
     stray: Arc<Mutex<Option<GpuError>>>,
 }
 
-/// The limits that are asked for: those of nearly every device with compute shaders, and as large buffers as it has.
+/// Requested limits: those of nearly every device with compute shaders, with the adapter's own buffer sizes.
 fn limits(most: &wgpu::Limits) -> wgpu::Limits {
     let least = wgpu::Limits::downlevel_defaults();
     wgpu::Limits {
@@ -76,7 +76,7 @@ fn limits(most: &wgpu::Limits) -> wgpu::Limits {
     }
 }
 
-/// How little an adapter is wanted; none where it is out of the question.
+/// Rank of an adapter, the best lowest; `None` where it is unsuitable.
 fn rank(info: &wgpu::AdapterInfo, choice: Choice) -> Option<u32> {
     match info.device_type {
         wgpu::DeviceType::DiscreteGpu => Some(0),
@@ -86,14 +86,14 @@ fn rank(info: &wgpu::AdapterInfo, choice: Choice) -> Option<u32> {
     }
 }
 
-/// Backends of any adapter. OpenGL only where there is nothing better: it shows the same adapters once more.
+/// Groups of backends, in order of preference. OpenGL comes last, because it lists the same adapters again.
 const ANY: [wgpu::Backends; 2] = [wgpu::Backends::PRIMARY, wgpu::Backends::GL];
 
-/// The adapters of backends that will do, the best first.
+/// Suitable adapters of the backends, the best first.
 fn wanted(backends: wgpu::Backends, choice: Choice) -> Vec<wgpu::Adapter> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = backends;
-    // Each check of an indirect dispatch is a dispatch of its own; the sizes are those of `plan_step`.
+    // Validating an indirect dispatch costs a dispatch of its own; the sizes are those of `plan_step`.
     descriptor.flags -= wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL;
     let instance = wgpu::Instance::new(descriptor);
     let adapters = block_on(instance.enumerate_adapters(backends)).into_iter();
@@ -104,14 +104,14 @@ fn wanted(backends: wgpu::Backends, choice: Choice) -> Vec<wgpu::Adapter> {
     wanted.into_iter().map(|(_, adapter)| adapter).collect()
 }
 
-/// An adapter of this machine.
+/// Description of an adapter of this machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterReport {
-    /// Its name.
+    /// Name of the adapter.
     pub name: String,
-    /// The interface through which it is used, such as Vulkan.
+    /// Graphics interface, such as Vulkan.
     pub backend: String,
-    /// Its driver, with its version.
+    /// Name and version of the driver.
     pub driver: String,
     /// True if a processor emulates it.
     pub is_emulated: bool,
@@ -136,9 +136,8 @@ pub fn adapters() -> Vec<AdapterReport> {
     found.iter().map(report).collect()
 }
 
-/// Whether the kernel has a graphics processor that drivers might open, as far as it tells. Where it has none
-/// the drivers need not be loaded to find the emulated adapters alone; Mesa's layer before them would besides
-/// look for a Wayland display, and complain on stderr where no session runs.
+/// True if the kernel lists a graphics processor. Otherwise the drivers would be loaded only to find the emulated
+/// adapters; Mesa's layer would also look for a Wayland display, and complain on stderr without a session.
 fn has_processor(devices: &Path) -> bool {
     // WSL; NVIDIA's; those of telephones and single-board computers; all others are in `dri`.
     const NODES: [&str; 5] = ["dxg", "nvidia", "mali", "kgsl", "pvr"];
@@ -191,7 +190,7 @@ impl Device {
         }
         if refusals.is_empty() {
             refusals.push(match choice {
-                Choice::Auto => "none is a graphics processor of its own".to_owned(),
+                Choice::Auto => "all are emulated by the processor".to_owned(),
                 Choice::Forced => "no driver is installed".to_owned(),
             });
         }
@@ -228,16 +227,15 @@ impl Device {
         &self.info.name
     }
 
-    /// Whether a processor emulates it.
+    /// True if a processor emulates the device.
     #[must_use]
     pub fn is_cpu(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
 
-    /// Does what uses the device; what goes wrong with the device meanwhile is the error.
+    /// Runs `work` with the device; a device error meanwhile is the result.
     ///
-    /// # Errors
-    /// [`GpuError`].
+    /// # Errors [`GpuError`].
     pub fn guarded<T>(&self, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
         self.check_lost()?;
         let filters = [
@@ -247,13 +245,13 @@ impl Device {
         ];
         let scopes = filters.map(|filter| self.device.push_error_scope(filter));
         let done = work();
-        // In reverse, as they were pushed; the last one popped is what counts.
+        // Scopes pop in reverse order; the last one popped decides.
         let mut fault = None;
         for scope in scopes.into_iter().rev() {
             fault = block_on(scope.pop()).map(GpuError::from).or(fault);
         }
         if done.is_err() || fault.is_some() {
-            // A loss is told only to those who poll.
+            // A loss is reported only during a poll.
             self.poll(wgpu::PollType::Poll);
         }
         self.check_lost()?;
@@ -264,10 +262,9 @@ impl Device {
         }
     }
 
-    /// Waits until the device has done all that it was given.
+    /// Waits until the device has finished all submissions.
     ///
-    /// # Errors
-    /// [`GpuError::Lost`].
+    /// # Errors [`GpuError::Lost`].
     pub fn wait(&self) -> Result<(), GpuError> {
         self.poll(wgpu::PollType::Wait {
             submission_index: None,

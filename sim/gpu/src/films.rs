@@ -12,15 +12,15 @@ use crate::device::{Device, GpuError};
 use crate::shade_films::SHADE_FILMS;
 use crate::stage::Pipelines;
 
-/// Buffers that a shader reads.
+/// Number of buffers that a shader reads.
 const INPUTS: usize = 4;
 /// Bytes of a plane of a tile.
 const PLANE_BYTES: usize = TILE_CELLS * size_of::<f32>();
-/// Most bytes of a buffer: a quarter of what every device can bind, since its memory belongs to the
-/// window as well.
+/// Greatest size of a buffer, bytes: a quarter of what every device can bind, since its memory belongs to the window
+/// as well.
 const BUFFER_BYTES: usize = 32 << 20;
 
-/// Films on the device; its buffers stay from batch to batch.
+/// Films on the device, with buffers that stay from batch to batch.
 pub struct GpuFilms {
     workspace: Workspace,
     shade: Pipelines,
@@ -30,8 +30,7 @@ pub struct GpuFilms {
 impl GpuFilms {
     /// Films on a device.
     ///
-    /// # Errors
-    /// A [`GpuError`] where the driver does not take the shaders.
+    /// # Errors A [`GpuError`] where the driver rejects the shaders.
     pub fn new(gpu: Device) -> Result<Self, GpuError> {
         Self::with_buffers(gpu, BUFFER_BYTES)
     }
@@ -65,7 +64,7 @@ impl GpuFilms {
     }
 }
 
-/// What all stages use.
+/// Shared state of all stages.
 struct Workspace {
     gpu: Device,
     buffer_bytes: usize,
@@ -75,7 +74,7 @@ struct Workspace {
 }
 
 impl Workspace {
-    /// What a stage makes of each tile, its planes split as they are wanted.
+    /// Runs a stage, and returns the planes of each tile.
     fn run<T>(
         &mut self,
         stage: &mut Pipelines,

@@ -1,5 +1,5 @@
-//! The graphics device, and what paint models need to run on it: stages of the simulation in WGSL, each with a twin in Rust.
-//! It knows no model: the twin of a model lies in the model's folder, in its module `device`.
+//! The graphics device, and the machinery of paint models on it: stages of the simulation in WGSL, each with a twin
+//! in Rust. It names no model: the device part of a model is in the model's folder, in its module `device`.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -9,11 +9,11 @@
 //! | [`on_device`] | models as the registry makes them |
 //! | [`arena`] | buffers that are used again |
 //! | `stage` | a compute shader and its pipelines |
-//! | `batch` | tiles as the shaders take them |
+//! | `batch` | tiles in the layout of the shaders |
 //! | `shade_films`, `bake_films` | the stages of films |
 //!
-//! A film of blue paint over white, on the graphics device and on the processor. Without a device the processor computes
-//! both:
+//! A film of blue paint over white, on the graphics device and on the processor. Without a device the processor
+//! computes both:
 //!
 //! ```
 //! use maulstick_gpu::{Choice, Device, GpuFilms};
@@ -45,20 +45,20 @@
 //!
 //! # What a device computes
 //!
-//! Steps of the models that have a twin on it, and the films of all models whose colours are films. Surfaces with wells,
-//! the sampler and the vacuum cleaner stay with the processor. Exports use the processor alone, for the same bytes
-//! everywhere; a device promises the same bytes for one adapter and driver, and which backend paints is journalled.
+//! Steps of the models that have a device part, and the films of all models whose colours are films. Surfaces with
+//! wells, the sampler and the vacuum cleaner stay with the processor. Exports use the processor alone, for the same
+//! bytes everywhere; a device gives the same bytes for one adapter and driver, and the journal names the backend.
 //!
 //! # Steps
 //!
 //! - A window and its brush's load stay on the device from a stroke's first step until they are *settled*, before
-//!   anything else reads them. Steps are submitted up to 64 at a time; a stroke sees how full its brush is at its
-//!   beginning and after every 256 steps, not when somebody looks, so the same adapter paints the same bytes.
-//! - Unsettled steps are kept. When the device is lost or its memory full, the processor repeats them and goes on, no
-//!   quantum is missing, and the switch is journalled at the stroke's end. A painting recovered in mid-stroke repeats
-//!   its last second on the processor.
-//! - What does not depend on the model is in `steps`; a model is a list of stages and a planner that turns a step into
-//!   dispatches, beside the processor's model. Tests hold every stage beside its twin, and whole strokes beside the
+//!   anything else reads them. Steps are submitted up to 64 at a time. The brush's load is read back at the beginning
+//!   of a stroke and after every 256 steps, never on demand, so the same adapter paints the same bytes.
+//! - Unsettled steps are kept. When the device is lost or its memory full, the processor repeats them and continues
+//!   without a missing quantum, and the switch is journalled at the stroke's end. A painting recovered in mid-stroke
+//!   repeats its last second on the processor.
+//! - Model-independent parts are in `steps`; a model is a list of stages and a planner that turns a step into
+//!   dispatches, beside the processor's model. Tests compare every stage with its twin, and whole strokes with the
 //!   processor's.
 
 pub mod arena;

@@ -8,15 +8,15 @@ use crate::device::{Choice, Device, GpuError};
 use crate::steps::model::GpuModel;
 use crate::steps::traffic::Traffic;
 
-/// Makes a model on a device. Where the choice is [`Choice::Auto`] the processor keeps what it does sooner. A [`GpuError`]
-/// where the driver does not take the shaders.
+/// Constructor of a model on a device. With [`Choice::Auto`] the processor keeps the work that it does faster. Fails
+/// with a [`GpuError`] where the driver rejects the shaders.
 pub type MakeModel = fn(Device, Choice) -> Result<OnDevice, GpuError>;
 
 /// A paint model on a device.
 pub struct OnDevice {
-    /// The model.
+    /// Paint model.
     pub model: Box<dyn PaintModel>,
-    /// What its steps move, where whole steps are the device's.
+    /// Traffic of its steps, where whole steps run on the device.
     pub traffic: Option<Arc<Traffic>>,
 }
 

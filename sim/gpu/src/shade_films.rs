@@ -4,7 +4,7 @@ use maulstick_optics::Studio;
 
 use crate::stage::Stage;
 
-/// The stage.
+/// Shading of films.
 pub(crate) static SHADE_FILMS: Stage = Stage {
     name: "shade_films",
     source: concat!(

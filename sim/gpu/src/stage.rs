@@ -1,27 +1,27 @@
-//! A compute shader and its pipelines: one for each set of constants, made when first wanted.
+//! A compute shader and its pipelines, one for each set of constants, made on demand.
 
 use maulstick_optics::Studio;
 
 use crate::device::Device;
 
-/// Invocations of a workgroup: long rows run fastest on emulated devices, and all devices have them.
+/// Number of invocations of a workgroup: long rows run fastest on emulated devices, and all devices have them.
 const GROUP: u32 = 256;
 
-/// What a stage is.
+/// Definition of a stage.
 pub(crate) struct Stage {
-    /// Its name, also that of its entry point.
+    /// Name of the stage and of its entry point.
     pub(crate) name: &'static str,
-    /// Its WGSL.
+    /// WGSL source.
     pub(crate) source: &'static str,
-    /// Its overridable constants.
+    /// Overridable constants.
     pub(crate) constants: fn(&Studio) -> Vec<(&'static str, f64)>,
-    /// How many planes it makes of a tile.
+    /// Number of planes that it computes for a tile.
     pub(crate) planes: fn(&Studio) -> usize,
 }
 
 /// A stage on a device.
 pub(crate) struct Pipelines {
-    /// What it is.
+    /// Definition of the stage.
     pub(crate) stage: &'static Stage,
     module: wgpu::ShaderModule,
     bindings: wgpu::BindGroupLayout,
@@ -30,7 +30,7 @@ pub(crate) struct Pipelines {
 }
 
 impl Pipelines {
-    /// A stage with `inputs` storage buffers and, last, one that it writes.
+    /// A stage with `inputs` storage buffers and, last, one for its output.
     pub(crate) fn new(gpu: &Device, stage: &'static Stage, inputs: u32) -> Self {
         let entry = |binding, read_only| wgpu::BindGroupLayoutEntry {
             binding,

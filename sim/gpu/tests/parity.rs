@@ -1,4 +1,4 @@
-//! Both backends beside plain f64 films.
+//! Both backends compared with plain f64 films.
 
 mod support;
 
@@ -200,7 +200,7 @@ fn what_a_driver_refuses_is_an_error() {
     });
     println!("{refused:?}");
     assert!(refused.is_err());
-    // What nobody waited for is told next time, and then it is over.
+    // An error without a waiter is reported at the next call, once.
     drop(too_large());
     assert!(gpu.guarded(|| Ok(())).is_err());
     assert_eq!(gpu.guarded(|| Ok(7)), Ok(7));

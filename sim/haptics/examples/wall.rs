@@ -20,7 +20,7 @@ const MODEL_TICKS: u32 = 15;
 /// Length of the brush head, m.
 const HEAD_M: f64 = 0.025;
 
-/// Depth that the hand wants at a time: 20 mm above the wall, 8 mm within it, and back, m.
+/// Depth that the hand aims for at a time: 20 mm above the wall, 8 mm within it, and back, m.
 fn wanted_depth_m(time_s: f64) -> f64 {
     let share = (time_s.min(3.0 - time_s) / 0.5).clamp(0.0, 1.0);
     -0.020 + 0.028 * share

@@ -40,7 +40,7 @@ pub fn step_response(share: f64) -> f64 {
 #[derive(Clone, Debug)]
 pub struct BartlettHanning {
     taps: Vec<f64>,
-    /// Newest input last.
+    /// Inputs, the newest last.
     inputs: Vec<f64>,
 }
 
@@ -80,7 +80,7 @@ impl BartlettHanning {
         &self.taps
     }
 
-    /// Takes in an input and returns the output. Before the first input all are like it.
+    /// Adds an input and returns the output. Before the first input all are equal to it.
     pub fn next(&mut self, input: f64) -> f64 {
         if self.inputs.is_empty() {
             self.inputs.resize(self.taps.len(), input);

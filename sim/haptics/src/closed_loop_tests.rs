@@ -1,12 +1,12 @@
-//! Servo, device and hand in a closed loop, on a clock of its own: what shakes and what comes to rest.
+//! Stability of servo, device and hand in a closed loop, on a clock of its own.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`walls`] | bare walls at every stiffness and delay, and strokes over linen |
 //! | [`guides`] | guides at every stiffness and delay, and strokes along a wavy path |
-//! | [`recorded_models`] | contact models of one hand, felt by others |
+//! | [`recorded_models`] | contact models of one hand, replayed to others |
 //! | [`scaled_devices`] | devices whose frame is smaller or larger than the desk |
-//! | [`zero_order_hold`] | energy that sampling gives, by the period, the friction of the device and its encoders |
+//! | [`zero_order_hold`] | energy that sampling adds, by the period, the device's friction and its encoders |
 
 mod guides;
 mod recorded_models;
@@ -24,13 +24,14 @@ pub(crate) const DT: f64 = 1e-3;
 /// Length of the head, m.
 pub(crate) const HEAD_M: f64 = 0.025;
 
-/// Movement of the tip that no hand feels, peak to peak, m: a literal, for the stability grid's own is what it judges by.
+/// Greatest movement of the tip that counts as still, peak to peak, m: a literal, independent of the stability grid's
+/// own.
 pub(crate) const STILL_M: f64 = 1e-4;
-/// Bounds of [`device`], N and N/s: literals, for the servo's own are what is tested.
+/// Bounds of [`device`], N and N/s: literals, because the servo's own are under test.
 pub(crate) const MOST_N: f64 = 1.5;
 pub(crate) const MOST_SLEW_N_S: f64 = 200.0;
 
-/// A device of 1.5 N and 200 N/s that bears 500 N/m.
+/// A device of 1.5 N and 200 N/s with a bound of 500 N/m.
 pub(crate) fn device() -> Limits {
     Limits {
         max_force_n: 1.5,
@@ -42,7 +43,8 @@ pub(crate) fn device() -> Limits {
     }
 }
 
-/// Without the guards, and as if the device took all that sampling gives: what is left are the bounds of the bare force.
+/// Limits without the guards, as if the device's damping absorbed all that sampling adds: only the bounds of the bare
+/// force remain.
 pub(crate) fn unguarded() -> Limits {
     Limits {
         max_force_n: 3.3,

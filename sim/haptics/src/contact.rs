@@ -44,9 +44,9 @@ pub struct Contact {
     relief: Option<Relief>,
     law: Law,
     head_length: f64,
-    /// Age beyond which it decays, s.
+    /// Age after which its force fades, s.
     pub time_to_live_s: f64,
-    /// Time over which it takes the place of the one before, s.
+    /// Time over which it replaces the model before, s.
     pub recovery_s: f64,
 }
 
@@ -55,39 +55,38 @@ pub struct Contact {
 pub struct ContactForce {
     /// Whole force on the hand, N.
     pub force: DVec3,
-    /// Part that depends on position alone, N: without drag, and without friction but what stuck bristles store.
+    /// Part of the force that depends on position alone, N: without drag, and without friction except the pull of
+    /// sticking bristles.
     pub conservative: DVec3,
     /// Depth of the undeformed point below the surface, m; negative above it.
     pub depth_m: f64,
     /// Hold of the bristles on the surface.
     pub grip: Grip,
-    /// Lever of the force: from the ferrule to the undeformed point, m, coming up with the depth as friction does.
+    /// Lever of the force: from the ferrule to the undeformed point, m, scaled up with the depth as friction is.
     pub lever: DVec3,
-    /// Stiffness along the normal that the model asks for, N/m.
+    /// Stiffness along the normal requested by the model, N/m.
     pub asked_n_m: f64,
-    /// Stiffness along the normal that is given, N/m.
+    /// Stiffness along the normal after its bound, N/m.
     pub stiffness_n_m: f64,
 }
 
-/// The head counts as projected onto the normal by at least this share of its length: as it is laid
-/// flat, eq. 8.1's stiffness k₁/l_p would grow without bound.
+/// Least projection of the head onto the normal, as a share of its length: as the head is laid flat, eq. 8.1's
+/// stiffness k₁/l_p would grow without bound.
 const LEAST_PROJECTION: f64 = 0.2;
 
 impl Contact {
-    /// Reads a model.
+    /// Converts a model for the servo.
     ///
-    /// # Errors
-    /// What is wrong with it: a number that is not finite, a normal that is not a unit vector, a
-    /// negative stiffness, a force that falls with depth, more than five knots, a grain or a relief out of
-    /// range, a time to live or a recovery of more than a second.
+    /// # Errors The fault: a number that is not finite, a normal that is not a unit vector, a negative stiffness, a
+    /// force that falls with depth, more than five knots, a grain or a relief out of range, a time to live or a
+    /// recovery of more than a second.
     pub fn new(model: &ContactModel) -> Result<Self, &'static str> {
         Self::with_relief(model, 1.0)
     }
 
-    /// Reads a model whose relief is felt as high as this share of it, 0 to 1.
+    /// Converts a model with its relief scaled by `share`, 0 to 1.
     ///
-    /// # Errors
-    /// As [`new`](Self::new).
+    /// # Errors As [`new`](Self::new).
     pub fn with_relief(model: &ContactModel, share: f64) -> Result<Self, &'static str> {
         let point = DVec3::from_array(model.plane_point_m);
         let normal = DVec3::from_array(model.plane_normal);
@@ -126,7 +125,7 @@ impl Contact {
         })
     }
 
-    /// Puts another relief in the place of its own.
+    /// Replaces the relief.
     #[cfg(test)]
     pub(crate) fn set_relief(&mut self, relief: Relief) {
         self.relief = Some(relief);
@@ -168,7 +167,7 @@ impl Contact {
         let n = self.normal;
         let force_n = local.force(handle.position - n * height_m, most).dot(n);
         Normal {
-            // A force that is there at the first touch would be a step in the hand.
+            // A force at the first touch would be a step in the hand.
             force_n: force_n.max(0.0).min(most * at.depth_m.max(0.0)),
             stiffness_n_m: local.stiffness_along(n, most),
         }
@@ -182,7 +181,7 @@ impl Contact {
         }
     }
 
-    /// Force of the law on a relief, N, and the size of it that presses.
+    /// Force of the law on a relief, N, and the magnitude of the pressing force, N.
     fn pressing(
         &self,
         handle: &HandleState,
@@ -218,13 +217,13 @@ impl Contact {
         )
     }
 
-    /// The force on the handle where no bristle sticks; stiffness never exceeds `max_stiffness`, N/m.
+    /// Force on the handle if no bristle sticks; its stiffness is at most `max_stiffness`, N/m.
     #[must_use]
     pub fn evaluate(&self, handle: &HandleState, max_stiffness: f64) -> ContactForce {
         self.evaluate_stuck(handle, &Stiction::default(), max_stiffness)
     }
 
-    /// The force on the handle; stiffness never exceeds `max_stiffness`, N/m.
+    /// Force on the handle; its stiffness is at most `max_stiffness`, N/m.
     #[must_use]
     pub fn evaluate_stuck(
         &self,

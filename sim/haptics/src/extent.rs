@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Smallest box, along the axes, around the places of a tip.
+/// Smallest axis-aligned box around the places of a tip.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
     low: DVec3,
@@ -10,13 +10,13 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// Around no place.
+    /// Extent of no place.
     pub const NONE: Self = Self {
         low: DVec3::MAX,
         high: DVec3::MIN,
     };
 
-    /// Grows around a place, m.
+    /// Grows the box to include a place, m.
     pub fn include(&mut self, place: DVec3) {
         self.low = self.low.min(place);
         self.high = self.high.max(place);

@@ -1,23 +1,23 @@
 //! Force of moving paint on the hand (Baxter 2004, § 8.8), from a solver that is far slower than the hand.
 //!
-//! A [`FluidForce`] holds for the velocity at which it was computed; its Jacobian carries it to the velocity now, a
-//! thousand times a second: f = f₀ + J·v. So drag follows the hand without lag, whatever the solver's rate. From one
-//! message to the next f₀ and J go along the step response of the Bartlett-Hanning window over the message's recovery,
-//! one period of its source. A mixture of two Jacobians that only brake only brakes.
+//! A [`FluidForce`] is computed for one velocity; its Jacobian extrapolates it to the current velocity, a thousand
+//! times a second: f = f₀ + J·v. So drag follows the hand without lag, whatever the solver's rate. From one message to
+//! the next f₀ and J follow the step response of the Bartlett-Hanning window over the message's recovery, one period of
+//! its source. A mixture of two dissipative Jacobians is dissipative.
 //!
-//! f₀ is what paint that moves by itself pushes with. Where the next message does not come, f₀ fades over a second period: paint
-//! of which nothing is known may have come to rest, and drags from then on. Held, it would push on a hand with energy that the
-//! paint has lost.
+//! f₀ is the push of paint that is still moving. If the next message does not come, f₀ fades over a second period,
+//! because the paint may have come to rest and then only drags. Held, f₀ would push the hand with energy that the paint
+//! has lost.
 
 use crate::bartlett_hanning::step_response;
 use glam::{DMat3, DVec3};
 use maulstick_types::haptics::{ContactModel, FluidForce};
 
-/// Drag at most, N·s/m: more, on a velocity in encoder steps, would shake itself.
+/// Greatest drag, N·s/m: more, on a velocity in encoder steps, would shake by itself.
 pub const MOST_DRAG: f64 = 0.8;
-/// Force on a hand at rest at most, N.
+/// Greatest force on a hand at rest, N.
 pub const MOST_FORCE_N: f64 = 1.5;
-/// Share of its size by which a Jacobian may drive, for rounding.
+/// Share of a Jacobian's magnitude by which it may drive the hand, for rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// A fluid force in the form that the servo evaluates.
@@ -50,7 +50,7 @@ impl Film {
         }
     }
 
-    /// `share` of the way to another.
+    /// Interpolation to another film by `share`.
     fn toward(self, other: Self, share: f64) -> Self {
         let (own, other) = (self.times(1.0 - share), other.times(share));
         Self {
@@ -61,12 +61,10 @@ impl Film {
 }
 
 impl Fluid {
-    /// Reads a message; `scale` is how many times as strong as it is it is felt. Angular parts are left out: the servo
-    /// gives forces.
+    /// Converts a message, with its force multiplied by `scale`. Angular parts are left out: the servo gives forces.
     ///
-    /// # Errors
-    /// What is wrong with it: a number that is not finite, a Jacobian that drives the hand, a time to live or a
-    /// recovery of more than a second.
+    /// # Errors The fault: a number that is not finite, a Jacobian that drives the hand, a time to live or a recovery
+    /// of more than a second.
     pub fn new(message: &FluidForce, scale: f64) -> Result<Self, &'static str> {
         let part = |of: &[f64; 6]| DVec3::new(of[0], of[1], of[2]);
         let rows = [0, 1, 2].map(|i| part(&message.jacobian[i]));
@@ -87,7 +85,9 @@ impl Fluid {
             return Err("a number is not finite");
         }
         if scale < 0.0 || drives(&jacobian) {
-            return Err("the force grows with the hand's velocity: paint would push the hand on");
+            return Err(
+                "the force grows with the hand's velocity: paint would accelerate the hand",
+            );
         }
         if message.time_to_live_ns > ContactModel::TIME_TO_LIVE_MOST_NS
             || message.recovery_ns > ContactModel::RECOVERY_MOST_NS
@@ -106,7 +106,7 @@ impl Fluid {
         })
     }
 
-    /// Share of its own motion that the paint may still have at an age, s.
+    /// Share of its motion that the paint may still have at an age, s.
     fn still_moves(&self, age_s: f64) -> f64 {
         if self.recovery_s <= 0.0 {
             return 1.0;
@@ -115,7 +115,7 @@ impl Fluid {
     }
 }
 
-/// What drags more than a device bears is as much weaker.
+/// A film whose drag is scaled down to the bound of a device.
 fn bounded(film: Film) -> Film {
     let columns = [
         film.jacobian.x_axis,
@@ -124,7 +124,7 @@ fn bounded(film: Film) -> Film {
     ];
     let squares = columns.map(DVec3::length_squared);
     let size = (squares[0] + squares[1] + squares[2]).sqrt();
-    // A film has drag along two axes: √2 times the one's.
+    // A film drags along two axes: √2 times the bound of one.
     let most = MOST_DRAG * std::f64::consts::SQRT_2;
     let film = if size > most {
         film.times(most / size)
@@ -152,37 +152,38 @@ fn drives(jacobian: &DMat3) -> bool {
         || s.determinant() < least * size * size
 }
 
-/// The newest fluid forces, on their way from one to the next.
+/// The newest fluid forces and the transition between them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FluidStage {
-    /// What is left behind.
+    /// Film before the newest one.
     before: Film,
-    /// The newest, and how long ago it arrived, s.
+    /// Newest force, and its age, s.
     newest: Option<(Fluid, f64)>,
 }
 
 impl FluidStage {
-    /// Takes in a newer force.
+    /// Replaces the force by a newer one.
     pub fn receive(&mut self, fluid: Fluid, fade_s: f64) {
         self.before = self.film(fade_s);
         self.newest = Some((fluid, 0.0));
     }
 
-    /// Time passes, s.
+    /// Advances the ages by `passed_s`.
     pub fn age(&mut self, passed_s: f64) {
         if let Some((_, age_s)) = &mut self.newest {
             *age_s += passed_s;
         }
     }
 
-    /// The film now; past its time to live it fades over `fade_s`.
+    /// Current film; past its time to live it fades over `fade_s`.
     fn film(&self, fade_s: f64) -> Film {
         let Some((fluid, age_s)) = &self.newest else {
             return Film::NONE;
         };
-        let share = match fluid.recovery_s > 0.0 {
-            true => step_response(age_s / fluid.recovery_s),
-            false => 1.0,
+        let share = if fluid.recovery_s > 0.0 {
+            step_response(age_s / fluid.recovery_s)
+        } else {
+            1.0
         };
         let overdue_s = (age_s - fluid.time_to_live_s).max(0.0);
         let left = (1.0 - overdue_s / fade_s).max(0.0);

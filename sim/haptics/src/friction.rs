@@ -1,31 +1,31 @@
 //! Forces across the normal (Baxter 2004, § 8.7.2 and eq. 8.8): friction at rest and in motion, and the drag of paint.
 //!
-//! The text's f_t = k_t·(v − n(n·v)) would push the hand on; it opposes the motion, acts in contact
-//! alone, and is bounded by μ·f_n. At rest it would be nothing, and a brush that is pulled gently would creep: there bristles
-//! stick, a spring from the place where they took hold, which gives way where it would pull by more than μ_s·f_n (Dahl 1968;
-//! Hayward and Armstrong 2000). What it stores it gives back, and what gives way is lost. The drag μ_p·L·v of eq. 8.8 has no
-//! such bound: a film drags however lightly it is touched. All come up over the first half millimetre.
+//! The text's f_t = k_t·(v − n(n·v)) would accelerate the hand; here it opposes the motion, acts only in contact, and
+//! is bounded by μ·f_n. It vanishes at rest, where a brush that is pulled gently would creep. So there bristles stick:
+//! a spring from the point of adhesion, which slips where it would exceed μ_s·f_n (Dahl 1968; Hayward and Armstrong
+//! 2000). The spring returns its energy, and slip dissipates it. The drag μ_p·L·v of eq. 8.8 has no such bound: a film
+//! drags however lightly it is touched. All rise over the first half millimetre.
 
 use glam::DVec3;
 
-/// Friction and drag grow to their full size over this depth, m.
+/// Depth over which friction and drag rise to their full value, m.
 pub const RAMP_M: f64 = 5e-4;
 /// Speed at which friction reaches its bound, m/s: k_t = μ·f_n by this.
 const FULL_SPEED: f64 = 0.02;
-/// Way over which friction at rest falls to that in motion, m.
+/// Slip over which friction at rest falls to that in motion, m.
 const SLID_M: f64 = 5e-4;
-/// Time in which bristles that slide no more stick as before, s.
+/// Time after which bristles that slide no more stick as before, s.
 const STICKING_S: f64 = 0.05;
-/// Stiffness of bristles that stick by the greatest that the device bears.
+/// Stiffness of sticking bristles as a share of the device's greatest.
 pub const STUCK_SHARE: f64 = 0.2;
 
-/// How far a depth has brought friction up, 0 to 1.
+/// Share of full friction at a depth, 0 to 1.
 #[must_use]
 pub fn ramp(depth_m: f64) -> f64 {
     (depth_m / RAMP_M).clamp(0.0, 1.0)
 }
 
-/// Friction at the velocity `across` the normal, m/s; its size is at most `bound_n`.
+/// Friction at the velocity `across` the normal, m/s; its magnitude is at most `bound_n`.
 #[must_use]
 pub fn friction(across: DVec3, bound_n: f64) -> DVec3 {
     let speed = across.length();
@@ -47,26 +47,26 @@ pub fn drag(across: DVec3, viscous: f64) -> DVec3 {
 pub struct Grip {
     /// Unit normal.
     pub normal: DVec3,
-    /// Force at which bristles that stick give way, N.
+    /// Force at which sticking bristles begin to slip, N.
     pub still_n: f64,
-    /// Force at which they continue giving way, N; not more.
+    /// Force at which slipping bristles keep slipping, N; not more.
     pub moving_n: f64,
     /// Stiffness, N/m.
     pub stiffness_n_m: f64,
 }
 
-/// Bristles that stick.
+/// State of sticking bristles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stiction {
-    /// Place of the ferrule at which they pull nowhere.
+    /// Position of the ferrule at which they do not pull.
     anchor: Option<DVec3>,
-    /// From 0, where they stick, to 1, where they slide. By the way that they slid and not by the speed, which encoders give in
-    /// steps: a hand that is still would seem to move.
+    /// From 0, sticking, to 1, sliding. It depends on the distance slid and not on speed, because encoder steps make a
+    /// still hand seem to move.
     sliding: f64,
 }
 
 impl Stiction {
-    /// Force at which they give way now, N.
+    /// Current force of slip, N.
     #[must_use]
     pub fn bound_n(&self, grip: &Grip) -> f64 {
         let bound = grip.still_n + (grip.moving_n - grip.still_n) * self.sliding;
@@ -80,14 +80,14 @@ impl Stiction {
             .clamp_length_max(self.bound_n(grip))
     }
 
-    /// The force if nothing gave way, N.
+    /// The force without slip, N.
     fn pull(&self, position: DVec3, grip: &Grip) -> DVec3 {
         let way = self.anchor.map_or(DVec3::ZERO, |anchor| anchor - position);
         (way - grip.normal * way.dot(grip.normal)) * grip.stiffness_n_m
     }
 
-    /// The end of a tick of `dt` s with the ferrule at `position`, m: what pulls by more than its bound has given way. Without
-    /// a grip nothing sticks.
+    /// Ends a tick of `dt` s with the ferrule at `position`, m: bristles that pull above their bound have slipped.
+    /// Without a grip nothing sticks.
     pub fn follow(&mut self, position: DVec3, grip: Option<&Grip>, dt: f64) {
         let Some(grip) = grip.filter(|grip| grip.stiffness_n_m > 0.0) else {
             *self = Self::default();

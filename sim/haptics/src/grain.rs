@@ -1,21 +1,20 @@
 //! The grain of the canvas: a small tangential texture of a narrow band of wavelengths.
 //!
-//! f = −a·(λ/2π)·∇Φ with Φ a sum of plane waves between λ and √2·λ in directions and phases from
-//! the seed: a potential, so a hand that goes round gets nothing. As a stiffness it is a·2π/λ; it is
-//! kept below a fifth of what the device bears (Choi and Tan 2004: textures shake first), and where a
-//! hand goes so fast that the servo would sample the waves coarsely they fade.
+//! f = −a·(λ/2π)·∇Φ with Φ a sum of plane waves between λ and √2·λ in directions and phases from the seed: a potential,
+//! so a closed path gains nothing. Its stiffness a·2π/λ is kept below a fifth of the device's bound (Choi and Tan 2004:
+//! textures shake first). The waves fade where the hand is so fast that the servo would sample them coarsely.
 
 use glam::DVec3;
 use maulstick_num::sin_cos;
 use maulstick_types::haptics::Grain;
 
-/// Plane waves.
+/// Number of plane waves.
 const WAVES: usize = 6;
-/// The finest wavelength, m: four steps of a coarse encoder.
+/// Shortest wavelength, m: four steps of a coarse encoder.
 const FINEST_M: f64 = 2e-4;
-/// Stiffness of the texture by the greatest that the device bears.
+/// Stiffness of the texture as a share of the device's greatest.
 const STIFFNESS_SHARE: f64 = 0.2;
-/// Waves that pass faster than this are not felt, Hz: a tenth of the servo's rate.
+/// Frequency of passing waves above which they vanish, Hz: a tenth of the servo's rate.
 const FASTEST_HZ: f64 = 100.0;
 
 /// The waves, ready for the servo.
@@ -37,10 +36,9 @@ fn next(state: &mut u64) -> f64 {
 }
 
 impl Texture {
-    /// Reads a grain.
+    /// Converts a grain.
     ///
-    /// # Errors
-    /// What is out of range: the amplitude must be 0 to 1, the wavelength .2 mm at least.
+    /// # Errors The value out of range: the amplitude must be 0 to 1, the wavelength .2 mm at least.
     pub fn new(grain: &Grain) -> Result<Self, &'static str> {
         let known = grain.amplitude.is_finite() && grain.wavelength_m.is_finite();
         if !known || !(0.0..=1.0).contains(&grain.amplitude) || grain.wavelength_m < FINEST_M {
@@ -49,7 +47,7 @@ impl Texture {
         let mut state = grain.seed;
         let mut waves = [[0.0; 3]; WAVES];
         for (place, wave) in waves.iter_mut().enumerate() {
-            // Spread all around: no direction is left without a wave.
+            // Spread all around, so that each direction has a wave.
             let turn = (place as f64 + next(&mut state)) / WAVES as f64 * std::f64::consts::PI;
             let (sine, cosine) = sin_cos(turn);
             // From λ to √2·λ.
@@ -64,7 +62,7 @@ impl Texture {
         })
     }
 
-    /// Stiffness at most on a device of this greatest stiffness, N/m.
+    /// Greatest stiffness of the texture, N/m, on a device with this greatest stiffness.
     #[must_use]
     pub fn stiffness(&self, max_stiffness: f64) -> f64 {
         if self.amplitude > 0.0 {
@@ -74,8 +72,8 @@ impl Texture {
         }
     }
 
-    /// The force at a place relative to the plane's point, m, on a hand that goes `across` the
-    /// normal, m/s; its size is at most the amplitude by `normal_n`.
+    /// Force at a place relative to the plane's point, m, on a hand at the velocity `across` the normal, m/s; its
+    /// magnitude is at most the amplitude times `normal_n`.
     #[must_use]
     pub fn force(
         &self,

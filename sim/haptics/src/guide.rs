@@ -1,16 +1,16 @@
 //! Guide of the hand: a spring to a piece of path, across it and within the plane of the canvas (virtual fixtures:
 //! Rosenberg 1993; the hand of a master, Baxter 2004, § 9.2).
 //!
-//! The nearest point of the path, not a point that moves on, holds the spring: a hand that rests is not dragged along. In the
-//! plane of the canvas, at a distance d from the path, the force toward it is
+//! The spring is anchored at the nearest point of the path, not at a moving one: a hand at rest is not dragged along.
+//! In the plane of the canvas, at a distance d from the path, the force toward it is
 //!
 //! ```text
 //! f(d) = min(K·d, F)·min(1, max(0, 2 − d/R))
 //! ```
 //!
-//! so a hand that goes 2·R away is let go. As f depends on d alone it has a potential, and a path gives back at most what was
-//! put in. The nearest point is followed from where it was, along the path: where a bend has two of them, the hand changes
-//! from one to the other where the first ends, and loses energy by it.
+//! so a hand beyond 2·R is released. As f depends on d alone it has a potential, and a path returns at most the energy
+//! that was put in. The nearest point is tracked along the path: where a bend has two of them, the hand changes from
+//! one to the other where the first ends, and loses energy by it.
 
 use glam::DVec3;
 use maulstick_types::haptics::GuideModel;
@@ -18,12 +18,12 @@ use maulstick_types::limits::FARTHEST_M;
 
 use crate::contact::HandleState;
 
-/// Most points of a path.
-const MOST: usize = GuideModel::POINTS_MOST;
-/// Pieces that are shorter within the plane are no part of the path, m.
+/// Greatest number of points of a path.
+const POINTS_MAX: usize = GuideModel::POINTS_MOST;
+/// Least length of a piece within the plane, m; shorter ones are dropped.
 const SHORTEST_M: f64 = 1e-4;
 
-/// Bounds of what guides may ask for, as the servo sets them.
+/// Bounds of a guide, set by the servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuideBounds {
     /// Largest stiffness, N/m.
@@ -32,7 +32,7 @@ pub struct GuideBounds {
     pub damping_n_s_m: f64,
     /// Largest force, N.
     pub force_n: f64,
-    /// Distance from the path from which the force falls, and twice which there is none, m.
+    /// Distance from the path at which the force begins to fall, m; it is zero at twice that.
     pub reach_m: f64,
 }
 
@@ -40,23 +40,23 @@ pub struct GuideBounds {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guide {
     /// Points within the plane through the origin.
-    points: [DVec3; MOST],
+    points: [DVec3; POINTS_MAX],
     count: usize,
     normal: DVec3,
     head_length: f64,
     stiffness: f64,
     damping: f64,
     most: f64,
-    /// Age beyond which it fades, s.
+    /// Age after which it fades, s.
     pub time_to_live_s: f64,
 }
 
-/// Point of a path.
+/// Point on a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foot {
-    /// Number of its piece.
+    /// Index of its piece.
     piece: usize,
-    /// Share of the piece; the first and the last continue beyond their ends.
+    /// Parameter along the piece, 0 to 1; the first and the last piece continue beyond their ends.
     along: f64,
 }
 
@@ -72,10 +72,9 @@ pub struct Pull {
 }
 
 impl Guide {
-    /// Reads a guide.
+    /// Converts a guide.
     ///
-    /// # Errors
-    /// What is wrong with it: a number that is not finite or out of range, a path of too few or too many points or without
+    /// # Errors The fault: a number that is not finite or out of range, a path of too few or too many points or without
     /// length in the plane, a time to live of more than a second.
     pub fn new(model: &GuideModel) -> Result<Self, &'static str> {
         let normal = DVec3::from_array(model.normal);
@@ -89,7 +88,7 @@ impl Guide {
         if !model.points_m.iter().flatten().all(near) {
             return Err("a point is not finite or more than 10 m away");
         }
-        if !(2..=MOST).contains(&model.points_m.len()) {
+        if !(2..=POINTS_MAX).contains(&model.points_m.len()) {
             return Err("a path has 2 to 16 points");
         }
         if !normal.is_finite() || (normal.length() - 1.0).abs() > 1e-6 {
@@ -103,7 +102,7 @@ impl Guide {
             return Err("the time to live is longer than a second");
         }
         let mut guide = Self {
-            points: [DVec3::ZERO; MOST],
+            points: [DVec3::ZERO; POINTS_MAX],
             count: 0,
             normal,
             head_length: model.head_length_m,
@@ -135,7 +134,7 @@ impl Guide {
         self.in_plane(handle.position + handle.orientation * DVec3::NEG_Z * self.head_length)
     }
 
-    /// Beginning and way of a piece, m.
+    /// Start and vector of a piece, m.
     fn piece(&self, piece: usize) -> (DVec3, DVec3) {
         let from = self.points[piece];
         (from, self.points[piece + 1] - from)
@@ -179,19 +178,19 @@ impl Guide {
         best
     }
 
-    /// Nearest point of the path for a hand, if none was followed before.
+    /// Nearest point of the path for a hand without an earlier one.
     #[must_use]
     pub fn first(&self, handle: &HandleState) -> Foot {
         self.nearest(self.place(handle))
     }
 
-    /// Follows a nearest point along the path, as far as the distance falls.
+    /// Moves a nearest point along the path while the distance falls.
     #[must_use]
     pub fn follow(&self, from: Foot, handle: &HandleState) -> Foot {
         let place = self.place(handle);
         let mut foot = self.foot(from.piece.min(self.last_piece()), place);
         // The distance falls at each step, and there are no more steps than pieces.
-        for _ in 0..MOST {
+        for _ in 0..POINTS_MAX {
             let ahead = foot.along >= 1.0 && foot.piece < self.last_piece();
             let behind = foot.along <= 0.0 && foot.piece > 0;
             let other = match (ahead, behind) {
@@ -199,9 +198,10 @@ impl Guide {
                 (_, true) => self.foot(foot.piece - 1, place),
                 _ => return foot,
             };
-            let leaves = match ahead {
-                true => other.along > 0.0,
-                false => other.along < 1.0,
+            let leaves = if ahead {
+                other.along > 0.0
+            } else {
+                other.along < 1.0
             };
             if !leaves {
                 return foot;

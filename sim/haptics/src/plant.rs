@@ -1,8 +1,8 @@
-//! A device and a hand that hold each other: the plant of the simulated stylus.
+//! A device in a hand: the plant of the simulated stylus.
 //!
-//! The device is a point mass with viscous and Coulomb friction whose position is read in encoder
-//! counts; the hand is a spring and a damper whose end follows where it wants to be. Semi-implicit
-//! Euler at twenty substeps a tick: an explicit one would add energy of its own.
+//! The device is a point mass with viscous and Coulomb friction whose position is read in encoder counts; the hand is a
+//! spring and a damper whose end moves to its target. Semi-implicit Euler with twenty substeps a tick: an explicit
+//! scheme would add energy.
 
 use glam::DVec3;
 
@@ -20,7 +20,7 @@ pub struct Hand {
 }
 
 impl Hand {
-    /// A light fingertip: it damps nothing.
+    /// A light fingertip, without damping.
     pub const FINGERTIP: Self = Self {
         mass_kg: 0.02,
         damping: 0.2,
@@ -43,7 +43,7 @@ impl Hand {
 /// Device and hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plant {
-    /// The grip.
+    /// Grip of the hand.
     pub hand: Hand,
     /// Mass of the device's tip, kg.
     pub mass_kg: f64,
@@ -63,7 +63,7 @@ pub struct Plant {
 }
 
 const SUBSTEPS: usize = 20;
-/// Corner of the filter on the velocity that is read, rad/s (60 Hz).
+/// Corner frequency of the velocity filter, rad/s (60 Hz).
 const VELOCITY_CORNER: f64 = 377.0;
 
 impl Plant {
@@ -103,7 +103,7 @@ impl Plant {
         self.read_velocity
     }
 
-    /// An upright brush in the hand, as the encoders read it.
+    /// An upright brush in the hand, from the encoders.
     #[must_use]
     pub fn handle(&self) -> HandleState {
         HandleState {
@@ -112,14 +112,14 @@ impl Plant {
         }
     }
 
-    /// Where the tip truly is, m.
+    /// Exact position of the tip, m.
     #[must_use]
     pub fn true_position(&self) -> DVec3 {
         self.position
     }
 
-    /// Energy given to the hand at the grip so far, J: the work of the motors, less what the device
-    /// loses by its friction and keeps in its mass.
+    /// Energy given to the hand at the grip so far, J: the work of the motors, less the losses to the device's friction
+    /// and the kinetic energy of its mass.
     #[must_use]
     pub fn given_j(&self) -> f64 {
         self.given_j
@@ -131,7 +131,7 @@ impl Plant {
         0.5 * self.mass_kg * self.velocity.length_squared()
     }
 
-    /// Lets `dt` s pass with `force` from the motors on the hand, which wants to be at `target`.
+    /// Advances by `dt` s with `force` from the motors on the hand, whose target is `target`.
     pub fn advance(&mut self, force: DVec3, target: DVec3, dt: f64) {
         let size = force.length();
         let force = if size > self.max_force_n {
@@ -146,7 +146,7 @@ impl Plant {
             let drag = self.velocity * (self.hand.damping + self.damping);
             let before = self.velocity;
             let mut velocity = before + (force + pull - drag) * (step / mass);
-            // Coulomb friction stops the tip, but does not turn it round.
+            // Coulomb friction stops the tip without reversing it.
             let lost = self.coulomb_n * step / mass;
             let speed = velocity.length();
             velocity *= if speed > lost {
@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn what_the_hand_gets_is_the_motors_work_less_what_the_device_takes() {
-        // A push of 1 N to a place 10 mm on: the hand keeps what its spring stores and its damper lost.
+        // A push of 1 N to a place 10 mm further: the hand keeps the energy of its spring and loses that of its damper.
         let mut plant = Plant {
             coulomb_n: 0.0,
             ..Plant::omni(Hand::PEN_GRIP, DVec3::ZERO)

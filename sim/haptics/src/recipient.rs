@@ -1,5 +1,4 @@
-//! Recipient of a contact model: a model is accepted only by the device, session and brush it was
-//! computed for.
+//! Recipient of a contact model: a model is accepted only by the device, session and brush it was computed for.
 
 use maulstick_types::Origin;
 use maulstick_types::haptics::{ContactModel, FluidForce, GuideModel};

@@ -1,4 +1,4 @@
-//! Relief under the brush: heights over a plane, felt through the tip a thousand times a second.
+//! Relief under the brush: heights over a plane, evaluated at the tip a thousand times a second.
 //!
 //! The heights are coefficients of a uniform cubic B-spline h(x), so height, slope and curvature are continuous, also across
 //! the patch's edge, beyond which the outermost heights continue. The contact force is −∇U of
@@ -7,16 +7,16 @@
 //! U = Φ₁(d + h) + Φ₂(d)        f = N₁(d + h)·(n − ∇h) + N₂(d)·n
 //! ```
 //!
-//! with d the depth below the plane, N the force of the law and N = N₁ + N₂, N₁ = G·(1 − e^(−N/G)): relief acts on the first
-//! newton or so of a force, and who presses harder feels the plane. As U is a potential, a hand that goes round gets nothing.
-//! The Hessian of U is at most
+//! with d the depth below the plane, N the force of the law and N = N₁ + N₂, N₁ = G·(1 − e^(−N/G)): relief acts on
+//! about the first newton of a force, and harder pressure feels the plane. As U is a potential, a closed path gains
+//! nothing. The Hessian of U is at most
 //!
 //! ```text
 //! (N₁' + N₂')·(n − ∇h)(n − ∇h)ᵀ + N₁·∇²h
 //! ```
 //!
-//! so heights that are steep or sharply curved are smoothed when they come in, and the law is made softer by what slope and
-//! curvature add ([`Relief::law_stiffness`]): nothing is stiffer than the device bears.
+//! so steep or sharply curved heights are smoothed on arrival, and the law is softened by the stiffness that slope and
+//! curvature add ([`Relief::law_stiffness`]): nothing exceeds the device's bound.
 
 mod smoothing;
 #[cfg(test)]
@@ -28,13 +28,13 @@ use maulstick_types::haptics::{HeightPatch, heights_um};
 
 use self::smoothing::{curvature, slope, smoothed};
 
-/// Cells along a side.
+/// Number of cells along a side.
 const SIDE: usize = HeightPatch::SIDE;
 /// Sides of a cell, m.
 const CELLS_M: std::ops::RangeInclusive<f64> = 2.5e-4..=2.5e-2;
 /// G: force up to which relief acts, N.
 const LIGHT_N: f64 = 1.0;
-/// Stiffness by curvature at most, by the greatest that the device bears.
+/// Greatest stiffness by curvature, as a share of the device's greatest.
 const CURVED: f64 = 0.4;
 
 /// Heights by cell, m, row after row.
@@ -44,7 +44,7 @@ type Heights = [[f64; SIDE]; SIDE];
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relief {
     corner: DVec3,
-    /// Along a row, and from row to row.
+    /// Unit vectors along a row, and from row to row.
     axes: [DVec3; 2],
     cell_m: f64,
     heights: Heights,
@@ -65,11 +65,11 @@ pub struct Height {
 }
 
 impl Relief {
-    /// Reads a patch over a plane of unit `normal`; `share`, from 0 to 1, is how high it is felt. None where it is flat.
+    /// Converts a patch over a plane of unit `normal`, with heights multiplied by `share`, 0 to 1. `None` where it is
+    /// flat.
     ///
-    /// # Errors
-    /// What is wrong with it: a number that is not finite, an axis that is not a unit vector in the plane, a cell that is not
-    /// of .25 to 25 mm, a number of heights that is not 256, a height of more than 5 mm.
+    /// # Errors The fault: a number that is not finite, an axis that is not a unit vector in the plane, a cell that is
+    /// not of .25 to 25 mm, a number of heights that is not 256, a height of more than 5 mm.
     pub fn new(
         patch: &HeightPatch,
         normal: DVec3,
@@ -113,7 +113,7 @@ impl Relief {
         }))
     }
 
-    /// Share of its height that a device of this greatest stiffness, N/m, bears.
+    /// Factor on the heights that keeps a device of this greatest stiffness, N/m, within its bound.
     fn share(&self, max_stiffness: f64) -> f64 {
         let asked = LIGHT_N * self.curvature;
         if asked > CURVED * max_stiffness {
@@ -150,7 +150,7 @@ impl Relief {
         }
     }
 
-    /// Stiffness that a law may have over this relief, N/m, so that nothing is stiffer than `max_stiffness`; `across` is that
+    /// Greatest stiffness of a law over this relief, N/m, with which nothing exceeds `max_stiffness`; `across` is that
     /// of friction at rest and grain, N/m.
     ///
     /// Of [[a, −a·s], [−a·s, a·s² + q]], law and curvature along the normal and along the slope, the greatest eigenvalue is at
@@ -176,7 +176,7 @@ pub fn light(force_n: f64) -> [f64; 2] {
     [LIGHT_N * (1.0 - left), left]
 }
 
-/// Cells that act at a place along an axis: value and derivative of their B-splines.
+/// First cell that acts at a place along an axis, and the values and derivatives of the B-splines.
 struct Weights {
     cells: [usize; 4],
     values: [f64; 4],
@@ -185,7 +185,7 @@ struct Weights {
 
 /// The uniform cubic B-splines at `x`, in cells from the middle of the first.
 fn weights(x: f64) -> Weights {
-    // From two cells beyond the edge on, all that acts is the outermost cell.
+    // From two cells beyond the edge on, only the outermost cell acts.
     let x = x.clamp(-2.0, SIDE as f64 + 1.0);
     let first = x.floor();
     let (t, u) = (x - first, 1.0 - (x - first));

@@ -1,10 +1,8 @@
 //! One tick of the servo: evaluate the newest model, age it, limit the force.
 //!
-//! A model takes the place of the one before without a jump (the recovery time of Mark et al. 1996):
-//! at its first tick both are evaluated at the same pose, and their difference, kept as a
-//! correction, shrinks to nothing over the recovery time, however many models come meanwhile. As
-//! the pose is the same, a model that says the same as the one before corrects nothing: the force
-//! follows the hand without lag.
+//! A model replaces the one before without a jump (the recovery time of Mark et al. 1996). At its first tick both are
+//! evaluated at the same pose; their difference, kept as a correction, shrinks to zero over the recovery time, however
+//! many models come meanwhile. Equal models need no correction, so the force follows the hand without lag.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -14,12 +12,12 @@
 //! | [`motor_thermal`] | thermal model of the motors, which bounds the force |
 //! | [`persistent`] | state that survives the loss of the device |
 //! | `active` | a contact model and its age |
-//! | `engagement` | force that begins where little is asked for |
+//! | `engagement` | begin of a force where the models ask for little |
 //! | `guidance` | the guide of the hand, beside the contact models |
 //! | `models` | the contact models, and the correction between them |
-//! | `orders` | what painter and device say: switches, strength, heat |
+//! | `orders` | commands of painter and device: switches, strength, heat |
 //! | `torque` | torque of the brush about its ferrule |
-//! | [`passivity`] | the energy that sampling gives, taken back |
+//! | [`passivity`] | the energy that sampling adds, removed again |
 //! | [`oscillation`] | detection of a shaking hand, which makes the force softer |
 //! | [`tick`] | input and report of a tick |
 
@@ -77,11 +75,11 @@ pub struct Servo {
     fault: Option<Fault>,
 }
 
-/// The end of the tick before.
+/// State at the end of the previous tick.
 #[derive(Clone, Copy, Debug)]
 struct Last {
     position: DVec3,
-    /// Force that models and guide asked for, with all its bounds, without the part that depends on velocity, N.
+    /// Bounded force of models and guide, without its velocity-dependent part, N.
     models: DVec3,
     /// Factor on the models' force.
     share: f64,
@@ -97,7 +95,7 @@ impl Servo {
         Self::after(limits, ServoMemory::fresh(limits))
     }
 
-    /// A servo in the place of one that has lost its device: a fault stays latched, motors warm.
+    /// A servo that continues from one that lost its device: a fault stays latched, motors stay warm.
     #[must_use]
     pub fn after(limits: Limits, memory: ServoMemory) -> Self {
         Self {
@@ -118,7 +116,7 @@ impl Servo {
         }
     }
 
-    /// A new model has arrived; the next step evaluates it.
+    /// Stores a new model, for the next step.
     pub fn receive(&mut self, contact: Contact, sender: Sender) {
         if sender == Sender::Another {
             self.engage_anew();
@@ -126,12 +124,12 @@ impl Servo {
         self.models.receive(contact);
     }
 
-    /// A new guide has arrived; the next step evaluates it.
+    /// Stores a new guide, for the next step.
     pub fn receive_guide(&mut self, guide: Guide, sender: Sender) {
         self.guidance.receive(guide, sender);
     }
 
-    /// A new force of paint has arrived; it acts where the head touches.
+    /// Stores a new force of paint; it acts where the head touches.
     pub fn receive_fluid(&mut self, fluid: Fluid) {
         self.models.receive_fluid(fluid, self.limits.fade_s);
     }
@@ -150,7 +148,7 @@ impl Servo {
         self.fault
     }
 
-    /// State for the next servo over the device.
+    /// State for the next servo of the device.
     #[must_use]
     pub fn memory(&self) -> ServoMemory {
         let mut thermal = self.thermal;
@@ -202,7 +200,7 @@ impl Servo {
         self.hold(handle, contact_force.as_ref(), dt);
         let wanted = self.wanted(handle, contact_force, dt, &mut tick);
         self.give(wanted, dt, &mut tick);
-        // Last of all: whatever went wrong above, no such number reaches the motors.
+        // The last check: no value that is not finite reaches the motors.
         if !self.force.is_finite() {
             self.fault = Some(Fault::NotANumber);
             return self.nothing(tick);
@@ -212,7 +210,7 @@ impl Servo {
         (self.force, tick)
     }
 
-    /// No force over a tick that was too long, and the ramp anew.
+    /// No force after a tick that was too long, and the ramp starts again.
     fn stand_still(&mut self, dt: f64) {
         self.force = DVec3::ZERO;
         self.torque = Torque::default();
@@ -221,12 +219,12 @@ impl Servo {
         self.last = None;
         self.passivity.forgive();
         if dt > self.limits.standstill_s {
-            // Who knows where the hand has gone meanwhile.
+            // The hand may have moved anywhere meanwhile.
             self.wait();
         }
     }
 
-    /// Brings the force towards the wanted one, N, within the bounds of its size and of its change.
+    /// Moves the force toward the wanted one, N, within the bounds of its magnitude and of its change.
     fn give(&mut self, wanted: DVec3, dt: f64, tick: &mut Tick) {
         let size = wanted.length();
         tick.clamped = size > tick.cap_n;
@@ -245,7 +243,7 @@ impl Servo {
         self.force += change;
     }
 
-    /// No force, and why.
+    /// No force, with the report.
     fn nothing(&mut self, tick: Tick) -> (DVec3, Tick) {
         self.force = DVec3::ZERO;
         self.torque = Torque::default();
@@ -256,7 +254,7 @@ impl Servo {
         (DVec3::ZERO, Tick { fault, ..tick })
     }
 
-    /// Latches what is no number, and a hand that the device drives.
+    /// Latches a value that is not finite, and a hand that the device drives.
     fn check(&mut self, handle: &HandleState, dt: f64) {
         let sane = dt.is_finite()
             && handle.position.is_finite()
@@ -271,8 +269,7 @@ impl Servo {
         }
     }
 
-    /// Sums the energy of the step that ends, by the force that was held over it and the models as
-    /// they were in it.
+    /// Adds the energy of the step that ends, from the force held over it and the models during it.
     fn observe(&mut self, handle: &HandleState, dt: f64) {
         let Some(last) = self.last else {
             return;
@@ -293,18 +290,17 @@ impl Servo {
         }
     }
 
-    /// The ramp and the recovery continue by a tick, and models age by all the time that has passed.
+    /// Advances the ramp and the recovery by a tick, and the age of models by the whole time passed.
     fn age(&mut self, dt: f64, passed_s: f64) {
         self.engagement.age(dt);
         self.guidance.age(&self.limits, dt, passed_s);
         if self.models.age(&self.limits, dt, passed_s) {
-            // Nothing of it is felt any more: a hand that has gone deep meanwhile is not to be pushed out as
-            // models come again.
+            // Its force has vanished: a hand that has gone deep meanwhile must not be pushed out when models return.
             self.engagement.wait_anew();
         }
     }
 
-    /// Bristles that touch stick, and give way to a hand that pulls; until force begins nothing holds it.
+    /// Updates sticking bristles, which slip under a pull; until force begins nothing holds the hand.
     fn hold(&mut self, handle: &HandleState, contact_force: Option<&ContactForce>, dt: f64) {
         let has_begun = self.engagement.has_begun();
         let touch = contact_force.filter(|felt| has_begun && felt.depth_m > 0.0);
@@ -330,7 +326,7 @@ impl Servo {
         }
     }
 
-    /// Counts the time without contact or guide; a touch brings the force up anew.
+    /// Counts the time without contact or guide; a touch starts the ramp again.
     fn rest(&mut self, touch: Touch, dt: f64) {
         if touch == Touch::Air && !self.guidance.holds(&self.limits) {
             self.idle_s += dt;
@@ -343,7 +339,7 @@ impl Servo {
         self.idle_s = 0.0;
     }
 
-    /// The force that models and guide ask for, and the brake.
+    /// Force requested by models and guide, and the brake.
     fn wanted(
         &mut self,
         handle: &HandleState,
@@ -370,8 +366,8 @@ impl Servo {
         force + guiding.force + brake
     }
 
-    /// Force of the models, N, the part of it that depends on position alone, and what they were multiplied by; `None` until
-    /// it begins.
+    /// Force of the models, N, its part that depends on position alone, and the factor applied; `None` until force
+    /// begins.
     fn contact(
         &mut self,
         contact_force: Option<ContactForce>,
@@ -386,7 +382,7 @@ impl Servo {
             self.orders.strength() * self.oscillation.softness() * self.fast_hand.softness();
         tick.asked_n_m = contact_force.asked_n_m;
         tick.stiffness_n_m = contact_force.stiffness_n_m * softer;
-        // A model that is past its time says nothing of the canvas.
+        // A model past its time to live says nothing about the canvas.
         let correction = self.models.correction();
         let asked_n = if tick.stale {
             f64::NAN

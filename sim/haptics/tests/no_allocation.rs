@@ -1,4 +1,4 @@
-//! A tick of the servo allocates nothing, whatever happens in it.
+//! A tick of the servo allocates nothing, in any situation.
 
 #[path = "../../num/tests/counting/mod.rs"]
 mod counting;

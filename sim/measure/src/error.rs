@@ -29,15 +29,15 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why measurements cannot be used.
+/// A fault of measurements.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}{}{what}", if place.line.is_some() { ": " } else { "" })]
 pub struct MeasureError {
-    /// Where.
+    /// Place in the table.
     pub place: Place,
-    /// The defect.
+    /// Description of the fault.
     pub what: String,
-    /// Advice.
+    /// Remedy.
     pub help: String,
 }
 
@@ -52,7 +52,7 @@ impl MeasureError {
         }
     }
 
-    /// In this line.
+    /// The error with its line.
     #[must_use]
     pub fn line(mut self, line: usize) -> Self {
         self.place.line = Some(line);

@@ -1,7 +1,7 @@
-//! The whole fit: wavelength by wavelength, some times over.
+//! The whole fit: wavelength by wavelength, in several passes.
 //!
-//! The first pass takes an instrument's usual noise; its residuals say what the noise is, and where
-//! there are drawdowns the mean of the white's S over the spectrum. The next passes use both.
+//! The first pass assumes an instrument's usual noise; its residuals give the actual noise and, with drawdowns, the
+//! mean of the white's S over the spectrum. The next passes use both.
 //!
 //! A mistake in a sample's shares or thickness shows at all wavelengths, and least squares would bend
 //! every paint in it. So samples are trusted after Huber (1964, *Robust estimation of a location
@@ -61,7 +61,7 @@ pub struct Fit {
     pub white_s_per_m: Option<f64>,
     /// Residual of each sample, in the order of the rows.
     pub residuals: Vec<Residual>,
-    /// Standard deviation of the readings, as estimated from what the fit leaves.
+    /// Standard deviation of the readings, estimated from the residuals of the fit.
     pub noise: f64,
     /// Warnings about the paints.
     pub warnings: Vec<Warning>,
@@ -234,7 +234,7 @@ fn wavelengths(
     let first = nm.partition_point(|nm| *nm <= 380.0).saturating_sub(1);
     let last = nm.partition_point(|nm| *nm < 780.0).min(nm.len() - 1);
     let usual = Prior::measured().map_err(|error| {
-        MeasureError::new(error.to_string(), "the program is broken: build it anew")
+        MeasureError::new(error.to_string(), "the program is broken: rebuild it")
     })?;
     let at = |i: usize| {
         let observe = |sample| observation(sample, i, &surface);
@@ -294,7 +294,7 @@ fn trust(spectrum: &mut [(f64, Wavelength<'_>)], found: &[Unknowns], noise: f64)
         .collect();
     let mut sorted = off.clone();
     sorted.sort_by(f64::total_cmp);
-    // Samples that alone determine something are met exactly, and say nothing of the others.
+    // Samples that alone determine something are met exactly, and carry no information about the others.
     let least = noise.min(USUAL_NOISE);
     let usual = sorted
         .get(samples / 2)
@@ -325,7 +325,7 @@ fn estimate_noise(spectrum: &[(f64, Wavelength<'_>)], found: &[Unknowns]) -> Opt
     enough.then(|| (squares / freedom).sqrt().clamp(LEAST_NOISE, 0.03))
 }
 
-/// The mean of the unit over the spectrum, by its logarithm, weighted by how well it is known.
+/// The mean of the unit over the spectrum, by its logarithm, weighted by its certainty.
 fn mean_unit(spectrum: &[(f64, Wavelength<'_>)], found: &[Unknowns]) -> Option<f64> {
     let (mut sum, mut weights) = (0.0, 0.0);
     for ((_, one), at) in spectrum.iter().zip(found) {

@@ -4,19 +4,19 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`table`] | tables of measurements |
-//! | [`headings`], [`notes`] | what its columns and comments mean |
-//! | [`measurements`] | samples: what they are made of, and what was read of them |
+//! | [`headings`], [`notes`] | its columns and comments |
+//! | [`measurements`] | samples: their composition and readings |
 //! | `reading` | rows of a table, as numbers |
 //! | [`instrument`] | raw spectra, the standard, the neutral-density filter |
-//! | [`surface`] | what the instrument reads of an internal reflectance |
+//! | [`surface`] | the instrument's reading of an internal reflectance |
 //! | [`layer`] | reflectance of a layer with its derivatives |
-//! | [`links`] | whether samples tie each paint to the reference white |
-//! | [`prior`] | what a paint is thought to be before it is measured |
+//! | [`links`] | links of each paint to the reference white through samples |
+//! | [`prior`] | assumptions about a paint before it is measured |
 //! | [`normal`], [`program`] | normal equations; quadratic programs |
 //! | [`wavelength`] | K and S of all paints at one wavelength |
-//! | [`determined`] | how well readings determine them |
-//! | [`influence`] | which sample does not go with the others |
-//! | [`residuals`] | how well they reproduce the samples |
+//! | [`determined`] | determinacy of the result |
+//! | [`influence`] | samples inconsistent with the others |
+//! | [`residuals`] | residuals of the samples |
 //! | [`fit`](mod@fit) | the whole |
 //! | [`paint_file`](mod@paint_file) | the result as a file |
 //! | [`warning`] | warnings of a fit |

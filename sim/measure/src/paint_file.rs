@@ -8,9 +8,8 @@ use maulstick_optics::spectrum::{SAMPLES, wavelength};
 
 use crate::fit::Fit;
 
-/// The file's text. K and S are in units of [`WHITE_S_PER_M`], six digits: the white's S is 1 where
-/// only ratios were measured, and what drawdowns say where they were, so that films of the painting
-/// are as thick as they were.
+/// Text of the file. K and S are in units of [`WHITE_S_PER_M`], six digits: the white's S is 1 where only ratios were
+/// measured, and otherwise that of the drawdowns, so that films of the painting are as thick as those.
 #[must_use]
 pub fn paint_file(fit: &Fit) -> String {
     let mut text = String::new();

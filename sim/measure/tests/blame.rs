@@ -1,4 +1,4 @@
-//! Which row is blamed where one is wrong, and that none is where all are right.
+//! Identification of a single wrong row, and none where all are right.
 
 mod support;
 
@@ -18,7 +18,7 @@ const ELEVEN: [&str; 11] = [
     "Burnt Umber",
     "Bone Black",
 ];
-/// A share of the wrong row is written as so many times what was weighed.
+/// Factor by which a share of the wrong row is misreported.
 const FACTOR: f64 = 1.6;
 
 /// A difference of reflectance that shows, root mean square over the spectrum: ΔE₀₀ 1 and more.
@@ -27,8 +27,8 @@ const SHOWS: f64 = 0.01;
 const DRIFT: f64 = 2e-3;
 const STRAY: f64 = 2e-3;
 
-/// Tables as painters make them: two of each paint by itself and with white 1:1, 1:4 and 1:9, and one of
-/// random mixtures. Every 10 nm, with readings.
+/// Tables like those of painters: two of each paint alone and with white 1:1, 1:4 and 1:9, and one of random mixtures.
+/// Every 10 nm, with readings.
 fn table(seed: u64) -> (Bench, Vec<Vec<f64>>) {
     let (paints, noise) = ([5, 8, 6][seed as usize % 3], NOISES[seed as usize / 3 % 3]);
     let mut bench = Bench::new(&ELEVEN[..paints], seed);
@@ -44,7 +44,7 @@ fn table(seed: u64) -> (Bench, Vec<Vec<f64>>) {
         }
     }
     let mut readings = bench.read(noise);
-    // What an instrument gets wrong in a row at all wavelengths: its white, and stray light.
+    // Systematic errors of an instrument in a row: its white, and stray light.
     for row in &mut readings {
         let (white, stray) = (DRIFT * bench.normal(), STRAY * bench.normal());
         row.iter_mut()
@@ -64,8 +64,8 @@ fn blamed(bench: &Bench, readings: &[Vec<f64>]) -> Vec<usize> {
     accusations.collect()
 }
 
-/// Writes one share of a mixture too large, the others as much too small together, where that shows: a
-/// share of a paint that hardly colours the mixture may be anything.
+/// Makes one share of a mixture too large and the others correspondingly smaller, where that is detectable: a share of
+/// a paint that hardly colours the mixture may be anything.
 fn spoil(bench: &mut Bench) -> usize {
     loop {
         let sample = (bench.uniform() * bench.samples.len() as f64) as usize;

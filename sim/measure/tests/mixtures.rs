@@ -83,8 +83,8 @@ fn seventy_one_mixtures_of_eleven_paints_are_reproduced() {
     }
 }
 
-/// .2 % of the perfect white is 6 % of what black paint reflects: the noise itself is then up to
-/// ΔE₀₀ 1.2 of a reading, and what counts is the colour that the fit finds below it.
+/// .2 % of the perfect white is 6 % of the reflectance of black paint: the noise alone is up to ΔE₀₀ 1.2 of a reading,
+/// and the test is for the fitted colour below it.
 #[test]
 fn noise_as_large_in_black_as_in_white_is_seen_through() {
     for seed in [1, 2, 3] {
@@ -142,7 +142,7 @@ fn exact_readings_give_k_and_s_back() {
     assert!(off(&fitted(&bench, &faulty)) > 1e-4, "a fault would pass");
 }
 
-/// Eq. 7.7 as printed, each row worth what it is: root mean square of R − R_fit over the dark samples.
+/// Eq. 7.7 as printed, with unweighted rows: root mean square of R − R_fit over the dark samples.
 #[test]
 fn weighted_rows_keep_dark_and_light_samples_apart() {
     let mut bench = seventy_one(4);
@@ -258,7 +258,7 @@ fn drawdowns_give_k_and_s_per_metre() {
         "{:?}",
         off_truth(&bench, &found)
     );
-    // Thicker than it was told to be by a fifth.
+    // Thicker by a fifth than reported.
     for sample in &mut bench.samples {
         if let Some((um, _, _)) = &mut sample.film {
             *um *= 1.2;

@@ -26,14 +26,14 @@ pub enum Transfer {
     /// Paint is transferred both ways and is counted.
     #[default]
     Paint,
-    /// The brush stays as it is: a full one never runs out, an empty one never fills.
+    /// The brush's load is constant: a full one never runs out, an empty one never fills.
     Sponge,
-    /// The brush lays down so much paint along a reference cell and takes nothing up.
+    /// The brush deposits a fixed amount of paint along a reference cell and takes nothing up.
     Marker {
-        /// Units.
+        /// Units along a reference cell.
         flow: f32,
     },
-    /// The brush takes on the colours that it touches; the canvas stays as it is.
+    /// The brush takes on the colours that it touches; the canvas is unchanged.
     Sampler,
     /// Lifts the paint that the brush touches, and leaves the brush clean.
     Vacuum,
@@ -46,7 +46,7 @@ pub struct Handling {
     pub push: bool,
     /// Its transfer.
     pub transfer: Transfer,
-    /// It adds no paint to a cell with more wet paint than this, quanta.
+    /// Wet paint on a cell, quanta, above which the brush adds none.
     pub most: f32,
 }
 
@@ -101,7 +101,7 @@ pub struct StepReport {
 }
 
 impl StepReport {
-    /// Adds what another step did.
+    /// Adds the results of another step.
     pub fn add(&mut self, other: &Self) {
         self.footprint_cells += other.footprint_cells;
         self.wet += other.wet;
@@ -132,9 +132,9 @@ pub type CountOwn = fn(&[OwnPlane]) -> Counts;
 
 /// A paint model: how paint moves in one step.
 ///
-/// Wells, fills, underpaintings, drying, rewetting and scraping know no model: they work on counts of paint by cell and
-/// slot. Planes of a model's own dry with a whole film, and are scraped off cell by cell. What the model reports is
-/// booked: paint from nowhere and paint lifted off have accounts of their own, and the rest must be found on brushes and
+/// Wells, fills, underpaintings, drying, rewetting and scraping are independent of the model: they work on counts of
+/// paint by cell and slot. A model's own planes dry with a whole film, and are scraped off cell by cell. The ledger
+/// books the model's report: created and removed paint have separate accounts, and the rest must be on brushes and
 /// surfaces.
 pub trait PaintModel: Send {
     /// Its name in `rig.toml`.
@@ -145,32 +145,31 @@ pub trait PaintModel: Send {
     fn backend(&self) -> String {
         "cpu".to_owned()
     }
-    /// True if the results of steps stay on another device until they are [settled](Self::settle). Until then nobody
-    /// else may change window and load, and all steps are of the same two.
+    /// True if the results of steps stay on another device until they are [settled](Self::settle). Until then window
+    /// and load must not be changed elsewhere, and all steps must be of the same two.
     fn defers(&self) -> bool {
         false
     }
-    /// As [`step`](Self::step), but window and load, which must be settled, have what it did at once.
+    /// [`step`](Self::step) with immediate results in window and load, which must be settled.
     fn step_now(&mut self, step: &mut Step<'_>) -> StepReport {
         self.step(step)
     }
-    /// Writes what deferred steps did into their window and load; what they did in all, besides what
-    /// they reported themselves.
+    /// Writes the results of deferred steps into their window and load; returns their totals, beyond their own reports.
     fn settle(&mut self, _window: &mut Window, _load: &mut BrushLoad) -> StepReport {
         StepReport::default()
     }
-    /// Cells beside a stroke that [`rest`](Self::rest) looks at; `None` if paint stays as the brush left it.
+    /// Number of cells beside a stroke that [`rest`](Self::rest) reads; `None` if paint does not move at rest.
     fn rest_halo(&self) -> Option<usize> {
         None
     }
     /// Moves the paint of a stroke once the brush is lifted; window and load are settled.
     fn rest(&mut self, _rest: &mut Rest<'_>) {}
-    /// What counts the paint in its own planes, for the ledger; `None` if there is none in them.
+    /// Counter of the paint in its own planes, for the ledger; `None` if they hold none.
     fn count_own(&self) -> Option<CountOwn> {
         None
     }
     /// The reason why the backend changed, returned once. No paint is lost by it.
-    fn take_fall(&mut self) -> Option<String> {
+    fn take_backend_change(&mut self) -> Option<String> {
         None
     }
     /// A limit of the backend that its steps have met, for the journal; returned once.

@@ -1,21 +1,21 @@
-//! What every paint model works with: a brush on a surface, in cells and quanta, and the interface behind which a model
-//! moves the paint of one step.
+//! Common parts of all paint models: a brush on a surface, in cells and quanta, and the interface of a model that moves
+//! the paint of one step.
 //!
-//! Pure, and it knows no model. [`PaintModel`](interface::PaintModel) is the interface; what touches what is the same for
-//! all models on cells, so the footprint of a head is found here.
+//! It names no model. [`PaintModel`](interface::PaintModel) is the interface; contacts are the same for all models on
+//! cells, so the footprint of a head is computed here.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`interface`] | the interface of paint models: a step, and what it reports |
+//! | [`interface`] | the interface of paint models: a step and its report |
 //! | [`brush`] | head, load and traits of a brush, in cells and quanta |
 //! | [`path`] | its motion cut into steps |
 //! | [`footprint`] | the cells that a head touches in a step, and how deep |
-//! | [`transfer`] | how much goes between brush and canvas along a way |
+//! | [`transfer`] | amount transferred between brush and canvas along a path |
 //! | [`modes`] | the sampler and the vacuum cleaner |
-//! | [`rheology`] | what the hand feels of wet paint |
-//! | [`trial`] | a brush on a bare surface, to measure a model by itself |
+//! | [`rheology`] | properties of wet paint for the force on the hand |
+//! | [`trial`] | a brush on a bare surface, to measure a model alone |
 //!
-//! A full round brush and its load, as a model finds it:
+//! A full round brush and its load, as input of a model:
 //!
 //! ```
 //! use maulstick_brush::{BrushFile, Head};
@@ -37,28 +37,27 @@
 //!
 //! # Steps
 //!
-//! - Paint steps are .25 mm of the brush's way, or one cell where that is more; what is left of a way waits for more,
+//! - Paint steps are .25 mm of the brush's way, or one cell where that is more; the remainder of a path waits for more,
 //!   or for the brush to lift. So neither sample rate nor steps show, and finer cells need no more steps. A blade and a
-//!   head with a skin step a cell at a time: what a blade pushes goes before its edge, and a skin draws hairlines. A
+//!   head with a skin step a cell at a time: a blade pushes paint ahead of its edge, and a skin draws hairlines. A
 //!   brush that the machine cannot follow takes steps two or four times as long; the solves carry that, so a replay
 //!   does the same.
-//! - A path begins with the last step of the brush's way down, on a palette with the last four, so a press that does
-//!   not move prints, loads and is cleaned.
-//! - Strips are drawn where they are in the middle of a step, and cover each cell by its area and by the share of the
-//!   way for which they are over it. What strips cover of a cell is the product of what each leaves open; each strip
-//!   gets the cells that it covers most. The lowest strip's share alone makes strokes 14 % thinner on cells twice as
-//!   large.
-//! - Transfer is a function of travel, and paint moves in as many parts as a step has cells, so how a way is cut does
-//!   not show.
+//! - A path begins with the last step of the brush's descent, on a palette with the last four, so that a press without
+//!   motion prints, loads and cleans.
+//! - Strips are drawn at their place in the middle of a step, and cover each cell by its area and by the share of the
+//!   path over it. The open share of a cell is the product of those of its strips; each strip gets the cells that it
+//!   covers most. The lowest strip's share alone makes strokes 14 % thinner on cells twice as large.
+//! - Transfer is a function of travel, and paint moves in as many parts as a step has cells, so the subdivision of a
+//!   path does not show.
 //!
 //! # What a model brings
 //!
-//! Its step, what paint does at rest, its rheology, and how its paint is shown (`ShowPaint` in `maulstick-appearance`); its
-//! entry (`maulstick-model-entry`) has them all. Paint is in
-//! counts by slot, on which wells, fills, drying, rewetting and the ledger work, and in planes of its own. A step
-//! depends on the cells around the brush alone, never on what else its window holds. Ways of using a brush (`Handling`)
-//! are parameters of the step and travel in the scene; what a mode creates or destroys is an account of the ledger. A
-//! rag would be another exchange in `transfer`.
+//! Its step, the motion of paint at rest, its rheology, and the display of its paint (`ShowPaint` in
+//! `maulstick-appearance`); its entry (`maulstick-model-entry`) has them all. Paint is in counts by slot, on which
+//! wells, fills, drying, rewetting and the ledger work, and in planes of its own. A step depends on the cells around
+//! the brush alone, never on the rest of its window. The handling of a brush (`Handling`) is a parameter of the step
+//! and travels in the scene; paint created or destroyed by a mode is an account of the ledger. A rag would be another
+//! exchange in `transfer`.
 
 pub mod brush;
 pub mod footprint;

@@ -7,8 +7,8 @@ use crate::brush::traits::TEXELS_PER_STRIP;
 use crate::footprint::Footprint;
 use crate::interface::Step;
 
-/// Lifts the wet paint off the cells that are at least half covered, a part of it off the others, and all that the
-/// brush carries; what was lifted.
+/// Lifts the wet paint off the cells that are at least half covered, a part of it off the others, and the load of the
+/// brush; returns all that was lifted.
 pub fn vacuum(footprint: &Footprint, step: &mut Step<'_>) -> Counts {
     let mut lifted = [0; SLOTS];
     for (slot, plane) in step.window.planes_mut() {
@@ -25,8 +25,8 @@ pub fn vacuum(footprint: &Footprint, step: &mut Step<'_>) -> Counts {
     lifted
 }
 
-/// Gives each texel that touches wet paint its colours, as full as the brush can be: by slot, what
-/// came onto the brush.
+/// Gives each texel that touches wet paint its colours, at the brush's full load; by slot, the paint added to the
+/// brush.
 pub fn sample(footprint: &Footprint, step: &mut Step<'_>) -> [i64; SLOTS] {
     let mut touched: Vec<(u32, u32)> = footprint
         .contacts

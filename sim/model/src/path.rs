@@ -11,13 +11,13 @@ use crate::interface::Sweep;
 
 /// Motion that counts as rest, cells.
 const STILL: f64 = 0.02;
-/// Longest motion of a hand, m of the brush: nothing is painted along a longer one.
+/// Longest motion of a hand, m of the brush; a longer one paints nothing.
 const LEAP_M: f64 = 2.0;
-/// A motion so many times as long as a step is painted as one that is doubled.
+/// Motion in step lengths from which it is painted in doubled steps.
 const DOUBLED_FROM: f64 = 1.5;
 /// Largest excess of a path over the long step across it, cells.
 const DETOUR: f64 = 0.25;
-/// Doublings of a step at most.
+/// Greatest number of doublings of a step.
 const MOST_DOUBLINGS: u32 = 2;
 /// A motion short of a step by less than this share is one.
 const ROUNDING: f64 = 1e-6;
@@ -25,11 +25,11 @@ const ROUNDING: f64 = 1e-6;
 /// Cuts the motion of one brush on one surface.
 #[derive(Debug)]
 pub struct PathStepper {
-    /// Its position a step ago, and the head there.
+    /// Its position one step before, and the head there.
     before: Option<(Waypoint, HeadPose)>,
     at: Waypoint,
     stepped: HeadPose,
-    /// Its position since then, less than a step on.
+    /// Its newest position, less than a step ahead.
     ahead: Option<Waypoint>,
     scale: Scale,
     doublings: u32,
@@ -51,9 +51,9 @@ impl PathStepper {
         }
     }
 
-    /// Path of a brush that comes onto `at` from where its handle lies; `step` is called for its last `steps` steps. So a brush that
-    /// is only set down prints, loads and is cleaned, however its bristles stand: paint goes over by the way along the
-    /// surface.
+    /// Path of a brush that descends to `at` along its handle; `step` is called for its last `steps` steps. So a brush
+    /// that is only set down prints, loads and cleans, whatever the pose of its bristles: paint is transferred by the
+    /// path along the surface.
     pub fn landing(
         head: &Head,
         (at, steps): (Waypoint, f64),
@@ -105,8 +105,8 @@ impl PathStepper {
         1 << self.doublings
     }
 
-    /// Moves on to `to` in steps that are doubled so many times, those of a blade never, and calls `step` for each,
-    /// with its doublings: they follow from its length, so that a saved path ends as it would have.
+    /// Moves to `to` in steps with this number of doublings, none for a blade, and calls `step` for each, with its
+    /// doublings: these follow from its length, so that a restored path ends in the same way.
     pub fn advance(
         &mut self,
         head: &Head,
@@ -118,7 +118,7 @@ impl PathStepper {
         let mut next = HeadPose::default();
         to.pose(head, self.scale, &mut next);
         if self.doublings > 0 {
-            self.turn(head, &next, &mut step);
+            self.step_to_reversal(head, &next, &mut step);
         }
         let motion = motion(&self.stepped, &next);
         if motion > LEAP_M / (self.scale.cell_m * self.scale.zoom) {
@@ -134,7 +134,7 @@ impl PathStepper {
         self.ahead = Some(to);
     }
 
-    /// Ends the contact: what waits is stepped, doubled as often as it is long.
+    /// Ends the contact: the remaining path is stepped, with doublings by its length.
     pub fn end(&mut self, head: &Head, mut step: impl FnMut(Sweep<'_>, u32)) {
         if let Some(to) = self.ahead.take() {
             self.step_to(head, to, &mut step);
@@ -142,7 +142,12 @@ impl PathStepper {
     }
 
     /// Steps to the point where the brush turns within a long step: the path there and back would be lost.
-    fn turn(&mut self, head: &Head, next: &HeadPose, step: &mut impl FnMut(Sweep<'_>, u32)) {
+    fn step_to_reversal(
+        &mut self,
+        head: &Head,
+        next: &HeadPose,
+        step: &mut impl FnMut(Sweep<'_>, u32),
+    ) {
         let Some(ahead) = self.ahead.take() else {
             return;
         };
@@ -209,8 +214,8 @@ mod tests {
     }
 
     proptest! {
-        /// However a motion of 10.4 cells is cut, its steps are a cell long, but for the last one, and make up the
-        /// whole.
+        /// However a motion of 10.4 cells is subdivided, its steps are a cell long, except for the last one, and add up
+        /// to the whole.
         #[test]
         fn steps_are_of_one_length_and_make_up_the_motion(
             cuts in prop::collection::vec(0.0..1.0f64, 0..30),
@@ -249,7 +254,7 @@ mod tests {
             prop_assert!(steps.iter().all(|step| step.0 <= f64::from(1 << step.1) * DOUBLED_FROM + 1e-3));
         }
 
-        /// To and fro within a long step, a brush goes all of the way but what it has not turned back from.
+        /// Reversals within a long step: the brush covers the whole path except its unreversed end.
         #[test]
         fn a_long_step_ends_where_the_brush_turns(swings in prop::collection::vec(0.3..3.5f64, 2..9)) {
             let head = Head::of(&BrushFile::library("round").expect("round"));
@@ -265,7 +270,7 @@ mod tests {
             prop_assert!((stepped - way).abs() < 0.01 * way, "{stepped} of {way} cells");
         }
 
-        /// A path that was kept goes on as the one that was not.
+        /// A restored path continues like the original.
         #[test]
         fn a_kept_path_goes_on(first in 0.0..10.0f64, second in 0.0..10.0f64) {
             let head = Head::of(&BrushFile::library("round").expect("round"));

@@ -1,8 +1,8 @@
 //! Amount of paint transferred between brush and canvas (Baxter 2004, Algorithm 3), by path length.
 //!
 //! The constants of the text hold for a step of one cell. Here the transfer is a function of the travel s in reference
-//! cells of .25 mm: a share 1 − (1 − .1)^s of the paint, at most .001·s units. No travel, no transfer; this takes the
-//! place of the text's speed cut-off, and the result does not depend on how a motion is cut into steps.
+//! cells of .25 mm: a share 1 − (1 − .1)^s of the paint, at most .001·s units. No travel, no transfer; this replaces
+//! the text's speed cut-off, and the result is independent of the subdivision of a motion.
 
 use maulstick_num::exp_f32;
 
@@ -12,12 +12,12 @@ pub(crate) const LN_KEPT: f32 = -0.105_360_516;
 /// from filling the tooth.
 pub(crate) const MAX_TRANSFER: f32 = 0.004;
 
-/// By what paint goes over between a head and what it touches.
+/// Parameters of the transfer between a head and the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exchanging {
     /// ln of the share that stays where it is along a reference cell.
     pub ln_kept: f32,
-    /// 1 where the two sides even out; 0 where all that is reached is taken up and gaps alone are filled.
+    /// 1 where the two sides even out; 0 where all paint within reach is taken up and only gaps are filled.
     pub evens: f32,
     /// The most that goes over along a reference cell, units.
     pub most: f32,
@@ -26,14 +26,14 @@ pub struct Exchanging {
 }
 
 impl Exchanging {
-    /// Bristles, which paint wets: what they carry and what they reach even out.
+    /// Bristles, which paint wets: their paint and the paint within reach even out.
     pub const BRISTLES: Self = Self {
         ln_kept: LN_KEPT,
         evens: 1.0,
         most: MAX_TRANSFER,
         swap: 0.03,
     };
-    /// Soft hair that flares: it hardly takes paint up, and mixes what it goes through.
+    /// Soft hair that flares: it hardly takes paint up, and blends the paint that it moves through.
     pub(crate) const BLENDER: Self = Self {
         swap: 0.3,
         ..Self::BRISTLES
@@ -53,14 +53,14 @@ impl Exchanging {
         1.0 - exp_f32(self.ln_kept * travel)
     }
 
-    /// Paint that leaves the brush for the canvas (positive) or the canvas for the brush (negative),
-    /// units, where the brush carries `on_brush`, reaches `on_canvas` units of what is `lying` there and stands
-    /// `gap` units above it, after `travel`, along which `share` goes over.
+    /// Paint transferred from the brush to the canvas (positive) or back (negative), units, where the brush carries
+    /// `on_brush`, reaches `on_canvas` units of the `lying` paint and is `gap` units above it, after `travel`, along
+    /// which `share` goes over.
     ///
-    /// The text's EQUAL_PAINT_CUTOFF is a constant of 833 µm, which makes films of oil (80 to 420 µm) go over
-    /// by their square. Here it is the donor's amount: the difference evens out, whatever the scale. A gap
-    /// fills faster, for the film is pressed into it, with what is free beyond it; but a film that bridges the
-    /// gap under a bristle splits in its middle as the bristle lifts off.
+    /// The text's EQUAL_PAINT_CUTOFF is a constant of 833 µm, which makes films of oil (80 to 420 µm) go over by their
+    /// square. Here it is the donor's amount: the difference evens out, whatever the scale. A gap fills faster with the
+    /// excess beyond it, because the film is pressed into it; but a film that bridges the gap under a bristle splits in
+    /// its middle as the bristle lifts off.
     #[must_use]
     #[inline(always)]
     pub fn transfer(
@@ -84,8 +84,8 @@ impl Exchanging {
         fill + if difference > 0.0 { amount } else { -amount }
     }
 
-    /// Paint that is swapped where brush and canvas are wet, units: their films mix as the bristles go through them,
-    /// but no deeper than a film, however high the paint is.
+    /// Paint that is swapped where brush and canvas are wet, units: their films mix as the bristles move through them,
+    /// but no deeper than a film, whatever the height of the paint.
     #[must_use]
     #[inline(always)]
     pub fn swapped(&self, on_brush: f32, on_canvas: f32, share: f32) -> f32 {
@@ -105,8 +105,8 @@ fn filled(share: f32) -> f32 {
 /// Depth of the films that are swapped, units: 100 µm.
 pub const SWAP_FILM: f32 = 0.004;
 
-/// A brush that lays no more than a film leaves up to so many times as much besides in the hollows under its bristles: thin
-/// paint is dragged off the ridges and gathers there.
+/// Additional deposit of a film-limited brush in the hollows under its bristles, in multiples of its film: thin paint
+/// is dragged off the ridges and gathers there.
 pub const POOL: f32 = 1.0;
 
 #[cfg(test)]
@@ -115,8 +115,8 @@ mod tests {
 
     use super::*;
 
-    /// Algorithm 3 as printed, for one cell of travel at full speed, but for its cut-off, which is the donor's
-    /// amount, and its most, which is 100 µm.
+    /// Algorithm 3 as printed, for one cell of travel at full speed, except its cut-off, which is the donor's amount,
+    /// and its maximum, which is 100 µm.
     fn printed(a_c: f64, a_b: f64) -> f64 {
         let difference = a_b - a_c;
         let donor = if difference > 0.0 { a_b } else { a_c };

@@ -1,5 +1,5 @@
-//! A brush on a bare surface, to measure or to show what a paint model does in a stroke, without a painting around it; and the
-//! paths along which the speed of strokes is measured.
+//! A brush on a bare surface, for measuring or showing strokes of a paint model without a painting; and the paths along
+//! which the speed of strokes is measured.
 
 use maulstick_brush::{BrushFile, Head, HeadPose};
 use maulstick_canvas::relief::Relief;
@@ -16,7 +16,7 @@ use crate::interface::{Handling, PaintModel, Step, StepReport, Sweep};
 
 /// Height of the brush over the surface, and how its joints are bent, of its length and rad.
 const PRESSED: (f64, f32) = (0.45, 0.3);
-/// Wet paint on the surface lies below this, cells.
+/// Upper bound of wet paint on the surface, cells.
 const TOP: f32 = 8.0;
 /// Paint of a surface that is wet all over, quanta.
 const FILM: f32 = 40_000.0;
@@ -30,9 +30,9 @@ pub struct Path {
     pub name: &'static str,
     /// Cells from one head to the next.
     way: f64,
-    /// By how much it turns on that way, rad.
+    /// Its rotation along the path, rad.
     turn: f64,
-    /// Where it begins to go, rad.
+    /// Its initial direction, rad.
     aim: f64,
 }
 
@@ -125,7 +125,7 @@ impl Trial {
         poses
     }
 
-    /// Covers all of the surface with a film of the first paint, and with nothing else.
+    /// Covers the surface with a film of the first paint alone.
     pub fn wet(&mut self) {
         let [film, own] = SLOTS;
         self.window.plane_mut(film).fill(FILM);

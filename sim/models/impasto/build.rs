@@ -1,4 +1,4 @@
-//! Checks the shaders of the twin on a device: an error in one is an error of the build.
+//! Checks the shaders of the device part, so that a shader error is a build error.
 
 #[cfg(feature = "device")]
 #[path = "../../../tools/check_shaders.rs"]

@@ -1,4 +1,4 @@
-//! The registry of paint models: the one place that names them all. Each is a folder beside it and exports its entry.
+//! The registry of paint models, the only place that names them all. Each is a folder beside it and exports its entry.
 //!
 //! ```
 //! let impasto = maulstick_models::model_called("impasto")?;
@@ -12,7 +12,7 @@ mod error;
 pub use error::NoModel;
 pub use maulstick_model_entry::{AutoRole, ModelEntry, SheetError, SheetPanel};
 
-/// All paint models; the first is that of a surface for which nothing else is said.
+/// All paint models; the first is the default.
 pub static MODELS: [ModelEntry; 4] = [
     maulstick_impasto::ENTRY,
     maulstick_dab::ENTRY,
@@ -40,7 +40,7 @@ pub fn model_called(name: &str) -> Result<&'static ModelEntry, NoModel> {
     })
 }
 
-/// The model with this part where the choice is left to the rig.
+/// The model with this role where the rig chooses one.
 #[must_use]
 pub fn auto_model(role: AutoRole) -> &'static ModelEntry {
     let mut models = MODELS.iter();

@@ -6,13 +6,13 @@ use crate::MotionError;
 use crate::strokes::{Stroke, strokes};
 use crate::take_sample::{TakeSample, checked};
 
-/// The part of a motion that is kept.
+/// Part of a motion to keep.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Part {
     /// From a time since its beginning to another, ns.
     Times([u64; 2]),
-    /// From a stroke to another, by their numbers from 1, with half of the pauses around them: parts that follow each
-    /// other share no sample and leave none out.
+    /// From a stroke to another, by their numbers from 1, with half of the pauses around them: successive parts share
+    /// no sample and leave none out.
     Strokes(RangeInclusive<usize>),
 }
 

@@ -1,6 +1,6 @@
 //! Faults of a motion, as data.
 
-/// Fault of a motion, or of what is asked of it.
+/// Error of a motion or its processing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MotionError {
     /// A factor out of range.
@@ -29,7 +29,7 @@ pub enum MotionError {
         /// Time since the beginning, s.
         at_s: f64,
     },
-    /// A stroke that would be torn: nothing is painted across a pause of that length.
+    /// A stroke with a gap that is too long to be painted across.
     #[error(
         "at {at_s:.3} s two samples of a stroke would lie {apart_s:.2} s apart, and nothing is painted over more than \
          {most_s:.1} s"
@@ -42,7 +42,7 @@ pub enum MotionError {
         /// The most that is painted across, s.
         most_s: f64,
     },
-    /// A cut that leaves nothing.
+    /// A cut without any sample.
     #[error(
         "no sample lies between {from_s:.3} s and {to_s:.3} s, and the motion is {length_s:.3} s long"
     )]
@@ -54,12 +54,12 @@ pub enum MotionError {
         /// Length of the motion, s.
         length_s: f64,
     },
-    /// A stroke that is not there.
+    /// A stroke beyond the last.
     #[error("there is no stroke {asked}: the motion has {count}")]
     NoStroke {
         /// The number, from 1.
         asked: usize,
-        /// So many there are.
+        /// Number of strokes.
         count: usize,
     },
     /// A motion without a single touch.
@@ -89,7 +89,7 @@ pub enum MotionError {
         /// The most that there may be.
         most: usize,
     },
-    /// An example that says nothing of its spacing.
+    /// An example without a measurable spacing.
     #[error("the example is a single stroke, which has no spacing")]
     NoSpacing,
 }

@@ -1,7 +1,6 @@
-//! Measures of an example: the direction of its strokes, their spacing, how far it varies, and what each of them is like.
+//! Measures of an example: the direction of its strokes, their spacing and its variation, and the properties of each.
 //!
-//! Differences of what follows each other are what is measured, so neither the shape of the example nor a trend in it
-//! counts for variation.
+//! Successive differences are measured, so neither the shape of the example nor a trend in it counts as variation.
 
 use glam::DVec2;
 use maulstick_num::{atan2, sin_cos};
@@ -17,7 +16,7 @@ const DAB: f64 = 0.5;
 const PASS_RAD: f64 = 0.6;
 /// Strokes that a pass has at least: fewer are a variation.
 const PASS: usize = 3;
-/// Strokes lie beside each other if they share so much of the shorter one.
+/// Overlap, as a share of the shorter one, from which strokes lie beside each other.
 const BESIDE: f64 = 0.25;
 
 /// A stroke of the example, in the frame of its pass.
@@ -65,7 +64,7 @@ pub struct Pass {
     pub spread_m: f64,
     /// Standard deviation of the ends along the direction, m.
     pub ragged_m: f64,
-    /// Gap between two strokes of a row, below 0 where they overlap, m; `None` where no row has two.
+    /// Gap between two strokes of a row, negative where they overlap, m; `None` where no row has two.
     pub gap_m: Option<f64>,
     /// True if rows follow each other across the direction, not against it.
     pub upward: bool,
@@ -118,7 +117,7 @@ impl Example {
     }
 }
 
-/// Direction of a path, each way alike: that of the greatest spread of its points, rad.
+/// Direction of a path, modulo half a turn: that of the greatest spread of its points, rad.
 fn direction(paths: &[Vec<DVec2>]) -> f64 {
     let (mut xx, mut xy) = (0.0, 0.0);
     for path in paths {
@@ -224,7 +223,7 @@ fn parted(paths: &[Vec<DVec2>]) -> Vec<std::ops::Range<usize>> {
     }
 }
 
-/// Angle between two directions, each way alike, rad.
+/// Angle between two directions modulo half a turn, rad.
 fn apart(a: f64, b: f64) -> f64 {
     let (s, c) = sin_cos(2.0 * (a - b));
     0.5 * atan2(s, c).abs()
@@ -343,7 +342,7 @@ fn hatches(strokes: &[Stroke], paths: &[Vec<DVec2>], width_m: f64) -> Result<Pas
     let of = |value: &dyn Fn(&Mark) -> f64| -> Vec<f64> { marks.iter().map(value).collect() };
     let (across, starts, ends) = (of(&|m| m.across), of(&|m| m.along[0]), of(&|m| m.along[1]));
     let ragged = if gaps.is_empty() {
-        // Where a row has several, their ends are no border.
+        // In a row of several, their ends are no border.
         [second_differences(&starts), second_differences(&ends)].concat()
     } else {
         Vec::new()

@@ -1,5 +1,4 @@
-//! An outline filled by example: the strokes of a motion, laid as their hand would have continued (Baxter 2004,
-//! § 9.2).
+//! An outline filled by example: the strokes of a motion, continued as their hand would have (Baxter 2004, § 9.2).
 
 use glam::DVec2;
 
@@ -14,18 +13,18 @@ use crate::take_sample::{TakeSample, checked, point, shifted};
 const STRETCH: f64 = 1.5;
 /// A shortened stroke takes at least this share of its time.
 const LEAST_TIME_SHARE: f64 = 0.25;
-/// So many strokes are laid at most.
+/// Greatest number of strokes.
 const MOST_STROKES: usize = 20_000;
 /// Longest pause between two strokes, s: a painter may have rested.
 const LONGEST_PAUSE_S: f64 = 2.0;
-/// Rows of dabs are half a pitch apart from each other in turn; for as many on an area as on a square grid of pitch 1 they
-/// have this pitch, √(2/√3).
+/// Pitch of rows of dabs, which are offset by half a pitch in turn, with the density of a square grid of pitch 1:
+/// √(2/√3).
 const HEXAGONAL: f64 = 1.074_569_931_823_542;
 /// Time that the brush hovers over the first stroke, ns.
 const HOVER_NS: u64 = 200_000_000;
 /// Shares of the variation across its row that a stroke keeps: the largest with which it stays within the outline.
-const KEPT: [f64; 5] = [1.0, 0.75, 0.5, 0.25, 0.0];
-/// Tolerance of what lies within, m.
+const VARIATION_SHARES: [f64; 5] = [1.0, 0.75, 0.5, 0.25, 0.0];
+/// Tolerance of places within the outline, m.
 const TOLERANCE_M: f64 = 1e-9;
 
 /// Options of a fill.
@@ -42,17 +41,16 @@ pub struct Fill {
 /// A place for a stroke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Slot {
-    /// Where it begins and ends along the direction, m; of a dab, its place twice.
+    /// Beginning and end along the direction, m; for a dab, its place twice.
     along: [f64; 2],
     /// Its row, m.
     across: f64,
 }
 
-/// Fills an outline with the strokes of an example, in its order: row after row, each stroke one of the example, which is
-/// as long as its place.
+/// Fills an outline with the strokes of an example, in its order: row by row, each stroke taken from the example with
+/// the length of its place.
 ///
-/// # Errors
-/// As [`Example::of`]; [`MotionError::NoRoom`], [`MotionError::TooMany`].
+/// # Errors As [`Example::of`]; [`MotionError::NoRoom`], [`MotionError::TooMany`].
 pub fn filled(
     example: &[TakeSample],
     outline: &Outline,
@@ -139,7 +137,7 @@ fn rows(pass: &Pass, outline: &Outline, fill: &Fill, random: &mut Random) -> Vec
         for span in ordered(spans, forth) {
             let room = span[1] - span[0];
             let count = match gap {
-                // As many as there would be in a row of the example.
+                // The number of a row of the example.
                 Some(gap) => {
                     let mean = pass.marks.iter().map(Mark::length_m).sum::<f64>();
                     let mean = mean / pass.marks.len() as f64;
@@ -148,7 +146,7 @@ fn rows(pass: &Pass, outline: &Outline, fill: &Fill, random: &mut Random) -> Vec
                 None => (room / most).ceil(),
             };
             let count = count.max(1.0);
-            // Without a gap of their own strokes overlap as far as rows are apart.
+            // Without a gap strokes overlap by the spacing of the rows.
             let gap = gap.unwrap_or(-pass.spacing_m);
             let each = room / count;
             let mut seams: Vec<f64> = (0..=count as usize)
@@ -207,7 +205,7 @@ fn grid(pass: &Pass, outline: &Outline, fill: &Fill, random: &mut Random) -> Vec
     slots
 }
 
-/// The stroke of the example for the next place: drawn the way that is its turn, otherwise any.
+/// The stroke of the example for the next place: one in the direction of this turn if possible.
 fn chosen<'a>(pass: &'a Pass, number: usize, random: &mut Random) -> &'a Mark {
     let forth = pass.marks[number % pass.marks.len()].forth;
     let alike: Vec<&Mark> = pass
@@ -256,7 +254,7 @@ fn laid(
     };
     let clearance = fill.clearance_m - TOLERANCE_M;
     let fits = |kept: &f64| warped(*kept).iter().all(|at| outline.holds(*at, clearance));
-    let kept = KEPT.into_iter().find(fits).unwrap_or(0.0);
+    let kept = VARIATION_SHARES.into_iter().find(fits).unwrap_or(0.0);
     let slower = factor.max(LEAST_TIME_SHARE);
     let begin_ns = own.first().map_or(0, |first| first.time_ns);
     let mut last_ns = None;

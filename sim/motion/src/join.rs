@@ -1,4 +1,4 @@
-//! Motions one after the other, with a lifted way between them.
+//! Consecutive motions, with a lifted path between them.
 
 use glam::DQuat;
 use maulstick_num::geometry::{Rigid, nlerp};
@@ -8,20 +8,18 @@ use crate::MotionError;
 use crate::error::within;
 use crate::take_sample::{TakeSample, checked, point};
 
-/// Pauses between two motions, s: contacts less than .15 s apart would be one stroke.
+/// Range of pauses between two motions, s: contacts less than .15 s apart would be one stroke.
 pub const PAUSES_S: std::ops::RangeInclusive<f64> = 0.2..=60.0;
-/// Pause between two motions unless another is asked for, s.
+/// Default pause between two motions, s.
 pub const PAUSE_S: f64 = 0.3;
-/// Speed of a hand that moves to the next stroke at most, m/s.
+/// Greatest speed of a hand between strokes, m/s.
 const SPEED_M_S: f64 = 0.5;
-/// Samples a second of a way in the air.
+/// Sample rate in the air, Hz.
 const RATE_HZ: f64 = 100.0;
 
-/// Joins motions. Between two of them the brush is lifted for `pause_s`, or longer where the way is long, and paints
-/// nothing.
+/// Joins motions. Between two of them the brush is lifted for `pause_s`, or longer for a long path, and paints nothing.
 ///
-/// # Errors
-/// [`MotionError::NoMotion`]; [`MotionError::OutOfRange`] of the pause.
+/// # Errors [`MotionError::NoMotion`]; [`MotionError::OutOfRange`] of the pause.
 pub fn joined(parts: &[&[TakeSample]], pause_s: f64) -> Result<Vec<TakeSample>, MotionError> {
     within("a pause of", pause_s, PAUSES_S)?;
     let mut all: Vec<TakeSample> = Vec::new();
@@ -35,7 +33,7 @@ pub fn joined(parts: &[&[TakeSample]], pause_s: f64) -> Result<Vec<TakeSample>, 
     }
 }
 
-/// Appends samples behind a lifted way.
+/// Appends samples after a lifted path.
 pub(crate) fn append(all: &mut Vec<TakeSample>, part: &[TakeSample], pause_s: f64) {
     let Some(first) = part.first() else {
         return;
@@ -68,8 +66,8 @@ fn minimum_jerk(t: f64) -> f64 {
     t * t * t * (10.0 + t * (6.0 * t - 15.0))
 }
 
-/// A sample in the air between two: a pen hovers; a 6-DOF stylus, whose height above the surface its brush would show,
-/// is out of range, and so is one that changes to the other kind.
+/// A sample in the air between two: a pen hovers; a 6-DOF stylus, whose height would show its brush, is out of range,
+/// like one that changes to the other kind.
 fn lifted(from: &StylusSample, to: &StylusSample, share: f64) -> StylusSample {
     let s = minimum_jerk(share);
     let between = |a: f64, b: f64| a + s * (b - a);

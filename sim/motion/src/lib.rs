@@ -1,8 +1,8 @@
-//! Motions of a stylus: what was recorded once is cut, joined, placed elsewhere, mirrored, and fills an outline by
-//! example (Baxter 2004, § 9.2).
+//! Editing of recorded motions of a stylus: cutting, joining, placing, mirroring, and filling an outline by example
+//! (Baxter 2004, § 9.2).
 //!
-//! Pure: samples in, samples out. Only the place of the brush's point on the surface, its turn and its times change;
-//! heights above the surface and pressures stay, so the brush bends and touches as it did.
+//! Pure: samples in, samples out. Only the place of the brush's point on the surface, its rotation and its times
+//! change; heights above the surface and pressures stay, so the brush bends and touches as before.
 //!
 //! | module | holds |
 //! | --- | --- |

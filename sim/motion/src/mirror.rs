@@ -27,8 +27,8 @@ impl Mirror {
 
     /// A sample in the mirror, whose line goes through `about`, m.
     ///
-    /// A rotation R of the handle becomes M·R·B: M is the mirror, and B mirrors the brush in the plane of its broad side,
-    /// which each head of the library has for a symmetry, a slanted one too. So what it leaves is the mirror image.
+    /// A rotation R of the handle becomes M·R·B: M is the mirror, and B mirrors the brush in the plane of its broad
+    /// side, a symmetry of each head of the library, including slanted ones. So its mark is the mirror image.
     #[must_use]
     pub fn sample(self, sample: &StylusSample, about: [f64; 2]) -> StylusSample {
         let mut sample = sample.clone();

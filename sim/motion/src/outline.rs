@@ -1,4 +1,4 @@
-//! An area on the desk: what closed polygons enclose, and the parts of lines that lie within it at a distance from its edge.
+//! An area on the desk enclosed by closed polygons, and the parts of lines within it at a distance from its edge.
 
 use glam::DVec2;
 use maulstick_num::sin_cos;
@@ -48,8 +48,7 @@ impl Frame {
 impl Outline {
     /// The area of closed contours, each a list of points, m; the last one joins the first.
     ///
-    /// # Errors
-    /// [`MotionError::NoArea`]; [`MotionError::OutOfRange`] for a point off the desk.
+    /// # Errors [`MotionError::NoArea`]; [`MotionError::OutOfRange`] for a point off the desk.
     pub fn new(contours: &[Vec<[f64; 2]>]) -> Result<Self, MotionError> {
         for metres in contours.iter().flatten().flatten() {
             crate::error::within("a point at", *metres, -FARTHEST_M..=FARTHEST_M)?;
@@ -81,8 +80,8 @@ impl Outline {
         })
     }
 
-    /// Parts of the line at `across` that are within, and at least `clearance_m` from the edge: where they begin and end
-    /// along it, m.
+    /// Parts of the line at `across` that are within, and at least `clearance_m` from the edge: their beginnings and
+    /// ends along it, m.
     #[must_use]
     pub fn spans(&self, frame: Frame, across: f64, clearance_m: f64) -> Vec<[f64; 2]> {
         let edges = self.edges.iter().map(|ends| ends.map(|at| frame.of(at)));
@@ -135,8 +134,7 @@ impl Outline {
     }
 }
 
-/// The part of the line at `across` that is nearer to a segment than `radius`, if there is one: a line through what is
-/// convex has one part in it.
+/// The part of the line at `across` that is nearer to a segment than `radius`, if any: convexity leaves at most one.
 fn near_segment([a, b]: [DVec2; 2], across: f64, radius: f64) -> Option<[f64; 2]> {
     let mut ends: Option<[f64; 2]> = None;
     let mut take = |u: f64| {
@@ -201,7 +199,7 @@ mod tests {
             })
             .collect();
         let star = Outline::new(&[star]).expect("an area");
-        // A step of the walk along each line, and what its ends may be off by.
+        // Step of the walk along each line, and tolerance of its ends.
         let step = 1e-4;
         let agree = |clearance: f64, asked: f64| {
             (0..40).all(|number| {

@@ -12,17 +12,16 @@ pub const RATES: std::ops::RangeInclusive<f64> = 0.01..=100.0;
 /// Pace of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pace {
-    /// So many times as fast.
+    /// Factor on the speed.
     Rate(f64),
     /// To this length, s.
     Length(f64),
 }
 
-/// Retimes a motion; its velocities follow. Where it begins stays.
+/// Retimes a motion with its velocities; its start stays.
 ///
-/// # Errors
-/// [`MotionError::OutOfRange`] of the rate; [`MotionError::Times`] where samples would fall together, and
-/// [`MotionError::Torn`] where those of a stroke would lie too far apart.
+/// # Errors [`MotionError::OutOfRange`] of the rate; [`MotionError::Times`] where samples would coincide, and
+/// [`MotionError::Torn`] where those of a stroke would be too far apart.
 pub fn retimed(samples: &[TakeSample], pace: Pace) -> Result<Vec<TakeSample>, MotionError> {
     let begin_ns = samples.first().map_or(0, |first| first.time_ns);
     let length_ns = samples.last().map_or(0, |last| last.time_ns - begin_ns);

@@ -12,9 +12,9 @@ use crate::take_sample::{TakeSample, checked, point, shifted};
 
 /// Factors by which a motion is scaled.
 pub const SCALES: std::ops::RangeInclusive<f64> = 0.01..=100.0;
-/// Distances to which a motion is moved at most, m.
+/// Range of displacements of a motion, m.
 const FAR_M: std::ops::RangeInclusive<f64> = -10.0..=10.0;
-/// Turns, rad.
+/// Range of rotations, rad.
 const TURNS: std::ops::RangeInclusive<f64> = -100.0..=100.0;
 /// Steepest tilt of a pen, rad: within the bound of a sample.
 const STEEPEST_RAD: f64 = 1.483_529;
@@ -25,7 +25,7 @@ const STEEPEST_RAD: f64 = 1.483_529;
 pub struct Placement {
     /// A point of the motion, m.
     pub from_m: [f64; 2],
-    /// Its place on the desk, m.
+    /// Target place on the desk, m.
     pub to_m: [f64; 2],
     /// Factor on lengths along the surface.
     pub scale: f64,
@@ -34,7 +34,7 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Where it is.
+    /// Identity placement.
     pub const HERE: Self = Self {
         from_m: [0.0; 2],
         to_m: [0.0; 2],
@@ -89,10 +89,10 @@ impl Placement {
 
     /// The image of a direction or a difference.
     fn vector(&self, v: DVec2) -> DVec2 {
-        self.turn(v) * self.scale
+        self.rotate(v) * self.scale
     }
 
-    fn turn(&self, v: DVec2) -> DVec2 {
+    fn rotate(&self, v: DVec2) -> DVec2 {
         match self.turn_rad {
             0.0 => v,
             turn => {
@@ -109,8 +109,8 @@ impl Placement {
         (to + self.vector(DVec2::from_array(at) - from)).to_array()
     }
 
-    /// A sample at its place. `head_m` is the length of the head that a 6-DOF stylus holds, m: its point is what is
-    /// scaled and moved, whatever the lean of the handle.
+    /// A placed sample. `head_m` is the length of the head of a 6-DOF stylus, m: its point is scaled and moved,
+    /// whatever the lean of the handle.
     #[must_use]
     pub fn sample(&self, sample: &StylusSample, head_m: f64) -> StylusSample {
         let mut turned = sample.clone();
@@ -124,7 +124,7 @@ impl Placement {
         let along = self.vector(velocity.truncate());
         placed.velocity_m_s = along.extend(velocity.z).to_array();
         let force = DVec3::from_array(sample.force_n);
-        placed.force_n = self.turn(force.truncate()).extend(force.z).to_array();
+        placed.force_n = self.rotate(force.truncate()).extend(force.z).to_array();
         placed
     }
 
@@ -140,7 +140,7 @@ impl Placement {
                     let (s, c) = sin_cos(angle);
                     s / c
                 };
-                let axis = self.turn(DVec2::from_array(tilt_rad.map(slope)));
+                let axis = self.rotate(DVec2::from_array(tilt_rad.map(slope)));
                 // Two steep tilts may become one that is steeper than a sample may have.
                 let tilt = |slope: f64| atan2(slope, 1.0).clamp(-STEEPEST_RAD, STEEPEST_RAD);
                 *tilt_rad = axis.to_array().map(tilt);
@@ -153,10 +153,9 @@ impl Placement {
         }
     }
 
-    /// A motion at its place.
+    /// A placed motion.
     ///
-    /// # Errors
-    /// [`MotionError::OutOfRange`]; [`MotionError::Sample`] where it would leave the desk.
+    /// # Errors [`MotionError::OutOfRange`]; [`MotionError::Sample`] where it would leave the desk.
     pub fn motion(
         &self,
         samples: &[TakeSample],

@@ -1,4 +1,4 @@
-//! Strokes of a motion: touches less than [`GAP_NS`] apart are one, as the brush counts them.
+//! Strokes of a motion: touches less than [`GAP_NS`] apart are one, as in the brush's count.
 
 use std::ops::Range;
 
@@ -6,8 +6,7 @@ use maulstick_types::stylus::StylusPose;
 
 use crate::take_sample::TakeSample;
 
-/// Touches less than this apart are one stroke, ns: as the brush counts strokes
-/// (`sim/brush/src/follow/stroke_count.rs`).
+/// Gap below which touches are one stroke, ns, as in `sim/brush/src/follow/stroke_count.rs`.
 pub const GAP_NS: u64 = 150_000_000;
 
 /// A stroke of a motion.
@@ -22,7 +21,7 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// Path of the point of the brush on the surface: x and y, m, and how far it is pressed in, 0 to 1.
+    /// Path of the brush's point on the surface: x and y, m, and depth of the press, 0 to 1.
     #[must_use]
     pub fn path(&self, samples: &[TakeSample], head_m: f64) -> Vec<[f64; 3]> {
         let along = samples[self.samples.clone()].iter();
@@ -69,9 +68,7 @@ pub fn strokes(samples: &[TakeSample], head_m: f64) -> Vec<Stroke> {
     found
 }
 
-/// Least and greatest x and y over the strokes, m.
-///
-/// Where nothing touches, it is `None`.
+/// Least and greatest x and y over the strokes, m; `None` without contact.
 #[must_use]
 pub fn bounds(samples: &[TakeSample], strokes: &[Stroke], head_m: f64) -> Option<[[f64; 2]; 2]> {
     let paths = strokes
@@ -86,7 +83,7 @@ pub fn bounds(samples: &[TakeSample], strokes: &[Stroke], head_m: f64) -> Option
     })
 }
 
-/// Middle of the rectangle around the strokes, m; where nothing touches, that of the whole motion.
+/// Middle of the rectangle around the strokes, m; without contact, that of the whole motion.
 #[must_use]
 pub fn middle(samples: &[TakeSample], head_m: f64) -> [f64; 2] {
     let whole = Stroke {

@@ -1,4 +1,4 @@
-//! Outlines filled by example, and what is measured of examples.
+//! Outlines filled by example, and measures of examples.
 
 mod hands;
 
@@ -66,7 +66,7 @@ fn spacing_direction_and_order_of_hatching_are_found_whatever_its_turn() {
         let off = along.perp_dot(DVec2::new(cos(turn), sin(turn))).abs();
         assert!(off < 0.03, "{turn}: {along}");
         assert!(found.gap_m.is_none() && found.spread_m < 0.001, "{found:?}");
-        // Either way along the direction, the hand continues as it did.
+        // In either direction the hand continues as before.
         let forth = along.dot(DVec2::new(cos(turn), sin(turn))) > 0.0;
         assert!(found.marks.iter().all(|mark| mark.forth == forth));
         assert_eq!(found.upward, forth);

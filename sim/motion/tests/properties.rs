@@ -78,7 +78,7 @@ fn numbers(sample: &StylusSample) -> Vec<f64> {
     all
 }
 
-/// Greatest difference of two motions, in whatever number.
+/// Greatest difference of two motions, over all their numbers.
 fn off(one: &[TakeSample], other: &[TakeSample]) -> f64 {
     assert_eq!(one.len(), other.len());
     let pairs = one.iter().zip(other);

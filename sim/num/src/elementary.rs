@@ -92,10 +92,10 @@ pub fn exp_f32(x: f32) -> f32 {
 /// e^(−t) and its mean over 0..t, (1 − e^(−t))/t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decay {
-    /// e^(−t), at least e^(−40): 1 + it is 1 by then, and slow subnormal numbers stay far, also for
-    /// its square.
+    /// e^(−t), at least e^(−40): below that 1 + e^(−t) is 1, and slow subnormal numbers are avoided, also for its
+    /// square.
     pub end: f32,
-    /// (1 − e^(−t))/t where t ≤ [`Decay::NEAR`]; beyond it is something else, but finite.
+    /// (1 − e^(−t))/t where t ≤ [`Decay::NEAR`]; beyond it an arbitrary finite value.
     pub mean: f32,
 }
 

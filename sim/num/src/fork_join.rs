@@ -1,10 +1,10 @@
 //! Fork and join: work shared among cores.
 //!
-//! Results do not depend on the number of threads, nor on which thread does which share: shares done at the same time
-//! write to different places, and their results are combined in a fixed order.
+//! Results are independent of the number of threads and of the assignment of shares: simultaneous shares write to
+//! different places, and their results are combined in a fixed order.
 //!
 //! A share takes tens of microseconds and the next follows at once, so helpers stay awake between them. Pools whose
-//! threads sleep in between (rayon) take longer to wake than a share takes.
+//! threads sleep in between (rayon) take longer to wake up than a share takes.
 
 use std::any::Any;
 use std::cell::{RefCell, UnsafeCell};
@@ -20,12 +20,11 @@ use std::time::Instant;
 const SPIN_LIMIT: u32 = 2_000;
 /// Iterations, spinning and yielding, before sleeping.
 const AWAKE: u32 = SPIN_LIMIT + 200;
-/// Threads that [`with_cores_beyond`] uses at most: beyond that, the serial part of a step takes longer than a share.
+/// Greatest number of threads of [`with_cores_beyond`]: above that, the serial part of a step takes longer than a
+/// share.
 const MOST_THREADS: usize = 16;
 
-/// No job.
 const EMPTY: u32 = 0;
-/// A job waits.
 const OFFERED: u32 = 1;
 /// A thread does the job.
 const TAKEN: u32 = 2;
@@ -71,7 +70,7 @@ thread_local! {
 }
 
 impl JobSlot {
-    /// Does what is offered until the slot is closed.
+    /// Runs offered jobs until the slot is closed.
     fn serve(&self) {
         let mut looks = 0;
         loop {
@@ -117,7 +116,7 @@ impl JobSlot {
         }
     }
 
-    /// Offers a job; what is returned does or awaits it when dropped.
+    /// Offers a job; dropping the result runs or awaits it.
     fn offer<'a>(&'a self, job: &'a mut Job<'a>, helper: &Thread) -> Offer<'a> {
         let job = NonNull::from(job);
         #[allow(
@@ -148,7 +147,7 @@ struct Offer<'a> {
 }
 
 impl Offer<'_> {
-    /// Does the job if nobody has begun it, or waits for its end; what it panicked with.
+    /// Runs the job if it has not begun, or waits for its end; returns its panic.
     fn end(&mut self) -> Option<Box<dyn Any + Send>> {
         let slot = self.slot;
         self.ended = true;
@@ -220,7 +219,7 @@ pub fn with_threads<T>(threads: usize, work: impl FnOnce() -> T) -> T {
     })
 }
 
-/// As [`with_threads`], with one thread for each core except `busy` of them.
+/// [`with_threads`], with one thread for each core except `busy` of them.
 pub fn with_cores_beyond<T>(busy: usize, work: impl FnOnce() -> T) -> T {
     let cores = available_parallelism().map_or(1, usize::from);
     with_threads(cores.saturating_sub(busy).min(MOST_THREADS), work)
@@ -232,10 +231,9 @@ pub fn threads() -> usize {
     HELPERS.with_borrow(|helpers| helpers.len()) + 1
 }
 
-/// Does the work on each share, at the same time where there are [helpers](with_threads) that are free.
+/// Does the work on each share, at the same time where [helpers](with_threads) are free.
 ///
-/// # Panics
-/// As the work on a share does, once no helper is at work any more.
+/// # Panics Like the work on a share, once all helpers have finished.
 pub fn each<S: Send>(shares: &mut [S], work: impl Fn(&mut S) + Sync) {
     match shares {
         [] => {}
@@ -244,7 +242,7 @@ pub fn each<S: Send>(shares: &mut [S], work: impl Fn(&mut S) + Sync) {
     }
 }
 
-/// Offers the last of the shares to the first helper that is free, spreads the others, and awaits what it offered.
+/// Offers the last of the shares to the first free helper, spreads the others, and awaits its own offer.
 fn spread<S: Send>(helpers: &[Helper], shares: &mut [S], work: &(impl Fn(&mut S) + Sync)) {
     let (Some((helper, others)), 2..) = (helpers.split_first(), shares.len()) else {
         return shares.iter_mut().for_each(work);
@@ -301,7 +299,7 @@ impl Balance {
         before.map_or(0.0, |at| self.cuts.get(at).copied().unwrap_or(1.0))
     }
 
-    /// As [`each`] with shares that were [cut](Self::cut), and cuts better the next time.
+    /// [`each`] with shares that were [cut](Self::cut), adapting the next cuts.
     pub fn each<S: Send>(&mut self, shares: &mut [S], work: impl Fn(&mut S) + Sync) {
         if shares.len() < 2 || threads() < 2 {
             return shares.iter_mut().for_each(work);

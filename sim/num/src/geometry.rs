@@ -52,7 +52,7 @@ impl Rigid {
         }
     }
 
-    /// As a message carries it.
+    /// The pose for a message.
     #[must_use]
     pub fn to_pose(&self) -> Pose {
         Pose {

@@ -1,5 +1,4 @@
-//! Eight numbers at a time: in one register where the processor has AVX2 or AVX-512, otherwise as the `wide`
-//! crate does it. Both round alike.
+//! Eight numbers at a time: in one register with AVX2 or AVX-512, otherwise by the `wide` crate. Both round alike.
 
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -11,9 +10,9 @@ pub trait Lanes:
 {
     /// The same eight times.
     fn splat(value: f32) -> Self;
-    /// These.
+    /// Lanes with the values of an array.
     fn of(values: &[f32; 8]) -> Self;
-    /// As an array.
+    /// Values of the lanes, as an array.
     fn values(self) -> [f32; 8];
     /// Without their signs.
     fn abs(self) -> Self;
@@ -25,9 +24,9 @@ pub trait Lanes:
     fn most(self, other: Self) -> Self;
     /// A mask of where these are less.
     fn less(self, other: Self) -> Self;
-    /// As a mask: `one` where it is, else `other`.
+    /// As a mask: `one` where set, otherwise `other`.
     fn choose(self, one: Self, other: Self) -> Self;
-    /// As a mask: whether it is anywhere.
+    /// As a mask: true if any is set.
     fn any(self) -> bool;
 }
 
@@ -90,8 +89,8 @@ mod avx {
 
     use super::Lanes;
 
-    /// Eight numbers in a register of AVX2, which all processors with AVX-512 have too; [`wide!`](crate::wide!)
-    /// alone names it, in what it runs where the processor has them.
+    /// Eight numbers in an AVX2 register, which all processors with AVX-512 have too; only [`wide!`](crate::wide!) uses
+    /// it, in code for such processors.
     #[doc(hidden)]
     #[derive(Clone, Copy, Debug)]
     pub struct Avx(__m256);

@@ -1,5 +1,5 @@
-//! The larger and the smaller of two numbers, for loops over planes: one instruction of a wide register each,
-//! where `max` and `min` also look for what is no number.
+//! The larger and the smaller of two numbers, for loops over planes: one instruction of a wide register each, where
+//! `max` and `min` also test for NaN.
 
 /// The larger of two numbers; the second one where either is no number.
 #[must_use]

@@ -1,7 +1,7 @@
 //! Loops over planes, compiled for the processor's wide registers where it has them.
 //!
-//! The compiler fuses no multiplication with an addition that is written beside it, even where the processor could, so
-//! each number is added, multiplied and rounded alike in all registers, and all give the same bytes.
+//! The compiler does not fuse a multiplication with an addition, even where the processor could, so each number is
+//! added, multiplied and rounded alike in all registers, and all give the same bytes.
 
 /// Registers that loops are compiled for, the narrowest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -52,7 +52,7 @@ impl Registers {
     }
 }
 
-/// Compiles a function for each of the [`Registers`], and calls it for those in use. What it calls must be
+/// Compiles a function for each of the [`Registers`], and calls it for those in use. Its callees must be
 /// `#[inline(always)]` to gain from it.
 #[macro_export]
 macro_rules! wide {

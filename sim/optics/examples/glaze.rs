@@ -1,4 +1,4 @@
-//! Prints what a glaze over a white ground reflects, by wavelength and thickness, as CSV to be plotted:
+//! Prints the reflectance of a glaze over a white ground, by wavelength and thickness, as CSV to be plotted:
 //!
 //! ```text
 //! cargo run --release -p maulstick-optics --example glaze -- "Quinacridone Magenta" > glaze.csv

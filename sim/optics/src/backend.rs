@@ -1,4 +1,4 @@
-//! The films of many tiles at once, on whatever computes them.
+//! Films of many tiles at once, on any backend.
 
 use std::num::NonZero;
 use std::panic::resume_unwind;
@@ -22,8 +22,7 @@ pub trait FilmBackend: Send {
 
     /// Linear sRGB, without gloss, of each tile: [`Studio::shade`].
     ///
-    /// # Errors
-    /// A [`BackendError`]; after [`BackendError::Device`] the tiles can still be had of [`CpuFilms`].
+    /// # Errors A [`BackendError`]; after [`BackendError::Device`] [`CpuFilms`] can still compute the tiles.
     fn shade(
         &mut self,
         studio: &Studio,
@@ -41,13 +40,13 @@ pub trait FilmBackend: Send {
     ) -> Result<Vec<Vec<f32>>, BackendError>;
 }
 
-/// Why films cannot be computed.
+/// Errors of computing films.
 #[derive(Debug, thiserror::Error)]
 pub enum BackendError {
-    /// They fit neither the studio nor a tile, whatever computes.
+    /// They do not fit the studio or a tile, on any backend.
     #[error("tile {tile} of the batch cannot be shaded: {what}")]
     Films {
-        /// Its place in the batch.
+        /// Index of the tile in the batch.
         tile: usize,
         /// The defect.
         what: String,
@@ -57,10 +56,9 @@ pub enum BackendError {
     Device(#[source] Box<dyn std::error::Error + Send + Sync>),
 }
 
-/// Tells whether tiles fit a studio.
+/// Checks that tiles fit a studio.
 ///
-/// # Errors
-/// [`BackendError::Films`].
+/// # Errors [`BackendError::Films`].
 pub fn check(studio: &Studio, tiles: &[FilmPlanes<'_>]) -> Result<(), BackendError> {
     for (tile, films) in tiles.iter().enumerate() {
         let wrong = |what: String| Err(BackendError::Films { tile, what });
@@ -102,20 +100,20 @@ impl Default for CpuFilms {
 }
 
 impl CpuFilms {
-    /// As many threads as there are cores, two at most.
+    /// One thread a core, at most two.
     #[must_use]
     pub fn new() -> Self {
         let cores = available_parallelism().map_or(1, NonZero::get);
         Self::with_threads(NonZero::new(cores.min(MOST_THREADS)).unwrap_or(NonZero::<usize>::MIN))
     }
 
-    /// So many threads, the caller's own among them.
+    /// A number of threads, the caller's included.
     #[must_use]
     pub fn with_threads(threads: NonZero<usize>) -> Self {
         Self { threads }
     }
 
-    /// The work of each tile, in order; where no thread can be had the caller's own does it all.
+    /// The work of each tile, in order; without other threads the caller's does it all.
     fn each<'a, T: Send>(
         self,
         tiles: &[FilmPlanes<'a>],

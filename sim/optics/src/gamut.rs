@@ -1,31 +1,27 @@
-//! Colours outside a display's gamut: mixtures of measured pigments, and highlights on them, are more
-//! saturated or brighter than it can show.
+//! Colours outside a display's gamut, as mixtures of measured pigments and highlights on them may be.
 //!
-//! [`GamutMapping::Soft`] works in Oklab (Ottosson 2020, *A perceptual color space for image
-//! processing*), where a line of constant hue stays one hue to the eye. A colour of lightness L and
-//! chroma C moves along the line from a grey of lightness L₀ to it, on which the gamut ends at the share
-//! 1/r of the way:
+//! [`GamutMapping::Soft`] works in Oklab (Ottosson 2020, *A perceptual color space for image processing*), where a line
+//! of constant hue also looks like one. A colour of lightness L and chroma C moves along the line from a grey of
+//! lightness L₀ to it, on which the gamut ends at the share 1/r of the distance:
 //!
 //! ```text
 //! L₀ = ½·(1 + sgn(D)·(e − √(e² − 2|D|))),  D = L − ½,  e = ½ + |D| + α·C,  α = 1
 //! (L − L₀, C) ← (L − L₀, C)·ρ/r,  ρ = κ + z − z²/(4·(1 − κ)),  z = clamp(r, κ, 2 − κ) − κ,  κ = .8
 //! ```
 //!
-//! L₀ is Ottosson's (2021, *Two practical gamut clipping algorithms*, "adaptive L₀, ½"): L itself for a
-//! grey, so that greys up to white stay; nearer to the middle the more colourful the colour is, so that
-//! a yellow flank a little brighter than the display can show gets darker before it bleaches, while the
-//! light and dark of a relief in paint that is too colourful remain. With larger α more colour and less
-//! lightness is kept. ρ has slope 1 at the knee κ and slope 0 where it reaches the edge: there is no
-//! sudden onset. What is inside the knee is not touched, not even by rounding.
+//! L₀ is Ottosson's (2021, *Two practical gamut clipping algorithms*, "adaptive L₀, ½"): L itself for a grey, so that
+//! greys up to white stay; nearer to the middle for more colourful colours, so that a yellow flank slightly too bright
+//! for the display gets darker before it bleaches, while the light and dark of a relief in paint that is too colourful
+//! remain. A larger α keeps more colour and less lightness. ρ has slope 1 at the knee κ and slope 0 where it reaches
+//! the edge, so there is no sudden onset. Colours inside the knee are unchanged, even by rounding.
 //!
-//! [`GamutMapping::Clamp`] is the clamp of Baxter 2004, § 7.8.1, which the comparison in this module's
-//! tests goes against.
+//! [`GamutMapping::Clamp`] is the clamp of Baxter 2004, § 7.8.1, the reference of this module's tests.
 //!
 //! The same terms are in `ui/src/render/shaders/light_surface.wgsl`.
 
 use crate::colour::{Matrix, inverse, product};
 
-/// Share κ of the way to the edge of the gamut that is left as it is.
+/// Share κ of the distance to the edge of the gamut within which colours are unchanged.
 pub const KNEE: f32 = 0.8;
 /// α: how much of the lightness goes for colour.
 pub const FOR_COLOUR: f32 = 1.0;
@@ -54,7 +50,7 @@ pub enum GamutMapping {
     Clamp,
 }
 
-/// The way from the working space into the gamut of a display.
+/// Mapping from the working space into the gamut of a display.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gamut {
     /// The mapping.
@@ -63,11 +59,11 @@ pub struct Gamut {
     pub from_working: [[f32; 3]; 3],
     /// Rows: from linear light of the display to cone responses.
     pub to_cones: [[f32; 3]; 3],
-    /// Rows: back.
+    /// Rows of the inverse matrix.
     pub from_cones: [[f32; 3]; 3],
     /// Rows: Oklab of the cube roots of cone responses.
     pub to_lab: [[f32; 3]; 3],
-    /// Rows: back.
+    /// Rows of the inverse matrix.
     pub from_lab: [[f32; 3]; 3],
 }
 
@@ -99,7 +95,7 @@ impl Gamut {
 
     fn soft(&self, rgb: [f32; 3]) -> [f32; 3] {
         let most = rgb[0].max(rgb[1]).max(rgb[2]);
-        // Neither black nor what is no number has a hue.
+        // Black and NaN have no hue.
         if !(most > 0.0 && most < f32::MAX) {
             return [0.0; 3];
         }
@@ -129,7 +125,7 @@ impl Gamut {
 /// The colours of one hue between a grey at 0 and a colour at 1, and beyond.
 struct Ray<'a> {
     gamut: &'a Gamut,
-    /// Cube roots of the cone responses of the grey, and what the way to the colour adds to them.
+    /// Cube roots of the cone responses of the grey, and their change toward the colour.
     grey: f32,
     way: [f32; 3],
 }
@@ -156,7 +152,7 @@ impl<'a> Ray<'a> {
         r.max(g).max(b)
     }
 
-    /// Where it leaves the gamut: by halving from the outer end of the knee, then along the chord.
+    /// Its exit from the gamut: by halving from the outer end of the knee, then along the chord.
     fn edge(&self) -> f32 {
         let (mut low, mut high) = (0.0f32, 1.0 / KNEE);
         for _ in 0..HALVINGS {
@@ -179,7 +175,7 @@ fn times(m: &[[f32; 3]; 3], v: [f32; 3]) -> [f32; 3] {
 #[must_use]
 pub fn cube_root(x: f32) -> f32 {
     let size = x.abs();
-    // Two thirds of the exponent's bias; the first guess is off by 4 % at most, which each turn squares.
+    // Two thirds of the exponent's bias; the first guess is off by at most 4 %, which each iteration squares.
     let mut y = f32::from_bits(size.to_bits() / 3 + 0x2a51_4067);
     for _ in 0..3 {
         y = (2.0 * y + size / (y * y)) * (1.0 / 3.0);

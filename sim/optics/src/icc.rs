@@ -1,8 +1,8 @@
-//! Where pictures go: colour spaces, and ICC profiles that say so to other programs.
+//! Output colour spaces, with ICC profiles for other programs.
 //!
-//! The encoding of sRGB and Display P3 is computed here, and is the same on every machine; so are the
-//! bytes of their profiles, which hold no date. Colours for the profile of a display or a printer go
-//! through `moxcms`, whose arithmetic may differ between processors.
+//! The encoding of sRGB and Display P3 is computed here, and is the same on every machine; so are the bytes of their
+//! profiles, which contain no date. Colours for the profile of a display or a printer go through `moxcms`, whose
+//! arithmetic may differ between processors.
 
 mod incoming;
 
@@ -20,16 +20,16 @@ use crate::colour::{
     D50, Matrix, RgbSpace, SrgbCurve, SrgbTable, apply, bradford, inverse, product, srgb_encode,
 };
 
-/// Why a file is no profile that pictures can go to.
+/// Errors of reading an output profile.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProfileError {
-    /// It cannot be read.
+    /// The profile cannot be read.
     #[error("this is not an ICC profile, or it is damaged: {0}")]
     Damaged(String),
     /// Its colours are not red, green and blue.
     #[error("this profile is for {0} colours, but pictures are RGB")]
     NotRgb(String),
-    /// It leads only from the device.
+    /// It converts only from the device.
     #[error("colours cannot be converted to this profile: {0}")]
     OneWay(String),
 }
@@ -54,8 +54,8 @@ pub struct Profile {
     curve: OnceLock<SrgbCurve>,
 }
 
-/// Where the date is in a profile (ICC.1:2022, § 7.2.1), which `moxcms` sets to the time of writing: the
-/// same picture shall have the same bytes. 1 January 2000, as its year, month and day.
+/// Place of the date in a profile (ICC.1:2022, § 7.2.1), which `moxcms` sets to the time of writing; a fixed date gives
+/// the same picture the same bytes: 1 January 2000, as its year, month and day.
 const DATE: std::ops::Range<usize> = 24..36;
 const NEW_CENTURY: [u8; 12] = [7, 208, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0];
 
@@ -63,14 +63,14 @@ const NEW_CENTURY: [u8; 12] = [7, 208, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0];
 const STEPS: u32 = 65_535;
 
 impl Profile {
-    /// That of a colour space.
+    /// The profile of a colour space.
     #[must_use]
     pub fn of(space: RgbSpace) -> Self {
         let name = match space {
             RgbSpace::Srgb => "sRGB",
             RgbSpace::DisplayP3 => "Display P3",
         };
-        // It encodes what it is made of: nothing can fail but a lack of memory.
+        // It encodes its own input: only a lack of memory can fail.
         let icc = matrix_profile(&space.to_pcs(), name).encode();
         let mut icc = icc.unwrap_or_default();
         if let Some(date) = icc.get_mut(DATE) {
@@ -84,10 +84,9 @@ impl Profile {
         }
     }
 
-    /// That of a display or printer, from the bytes of an ICC file.
+    /// The profile of a display or printer, from the bytes of an ICC file.
     ///
-    /// # Errors
-    /// [`ProfileError`].
+    /// # Errors [`ProfileError`].
     pub fn read(icc: Vec<u8>) -> Result<Self, ProfileError> {
         let damaged = |what: &dyn fmt::Display| ProfileError::Damaged(what.to_string());
         let target = ColorProfile::new_from_slice(&icc).map_err(|error| damaged(&error))?;
@@ -104,8 +103,7 @@ impl Profile {
         let has_table = target.lut_b_to_a_perceptual.is_some()
             || target.lut_b_to_a_colorimetric.is_some()
             || target.lut_b_to_a_saturation.is_some();
-        // Where the profile has primaries, its own gamut is the one to come into; a table does not tell
-        // its gamut, and the wide space's is nearest.
+        // A profile with primaries has its own gamut; a table's gamut is unknown, and the wide space's is nearest.
         let to_pcs = if has_table {
             RgbSpace::DisplayP3.to_pcs()
         } else {
@@ -192,7 +190,7 @@ impl Profile {
         }
     }
 
-    /// As [`encode`](Self::encode), 16 bits a channel: values of pixels, three each.
+    /// [`encode`](Self::encode) with 16 bits a channel: values of pixels, three each.
     pub fn encode16(&self, linear: &[[f32; 3]], values: &mut [u16]) {
         let curve = self.curve.get_or_init(SrgbCurve::default);
         for (pixel, colour) in values.chunks_exact_mut(3).zip(linear) {
@@ -204,8 +202,8 @@ impl Profile {
         }
     }
 
-    /// For a display with a profile of its own: what it is sent for the colours of a cube of `side`³
-    /// nodes of encoded light, red fastest; 0 to 1. None where the encoding of sRGB is all there is.
+    /// For a display with its own profile: its values for the colours of a cube of `side`³ nodes of encoded light, red
+    /// fastest; 0 to 1. `None` where the encoding of sRGB suffices.
     #[must_use]
     pub fn cube(&self, side: usize) -> Option<Vec<[f32; 3]>> {
         let Encoder::Foreign { transform, .. } = &self.encoder else {

@@ -6,23 +6,23 @@
 //! | [`spectrum_file`] | spectra from CSV files |
 //! | [`cie`] | observers and illuminants |
 //! | [`quadrature`] | Gauss rules of any weight (Stieltjes, Golub and Welsch) |
-//! | [`rule`] | which wavelengths a painting computes, and their weights in XYZ |
+//! | [`rule`] | the wavelengths of a painting, and their weights in XYZ |
 //! | `fitted` | the rule that is fitted to paints and light |
 //! | [`km`] | Kubelka-Munk films |
 //! | [`surface`] | the surface correction |
 //! | [`light`] | a lamp on a relief |
 //! | [`colour`] | XYZ, Lab, ΔE₀₀, the RGB of displays |
 //! | [`gamut`] | colours outside a display's gamut |
-//! | [`icc`] | where pictures go: profiles |
+//! | [`icc`] | output profiles |
 //! | [`paints`] | the measured paints |
-//! | [`mixture`] | what mixed paints reflect, opaque or as a film |
+//! | [`mixture`] | reflectance of mixed paints, opaque or as a film |
 //! | [`viewing`] | light, observer and rule together: the colour of a reflectance |
 //! | [`comparison`] | one graded mixture by four ways of mixing |
 //! | [`search`] | minima of functions of one and two variables |
-//! | [`matching`] | mixtures that come nearest to a colour |
+//! | [`matching`] | mixtures nearest to a colour |
 //! | [`studio`] | all of the above for the paints, ground and light of one painting |
 //! | [`upsampling`] | reflectances that have a given colour |
-//! | [`backend`] | a studio's films for many tiles at once, on whatever computes them |
+//! | [`backend`] | a studio's films for many tiles at once, on any backend |
 //!
 //! A film of blue and white paint, 100 µm of each, over black, and the same paint half as thick:
 //!
@@ -45,10 +45,10 @@
 //!
 //! # Choices
 //!
-//! - Colour is computed at a few wavelengths. Which, and their weights in XYZ, are fitted to the paints and the light
+//! - Colour is computed at a few wavelengths. These, and their weights in XYZ, are fitted to the paints and the light
 //!   when a painting begins and when its light changes. The fit is to the whole paint file, since a new paint on the
-//!   palette must not change colours on the canvas. No weight is negative: weights of either sign gain a hundredth of
-//!   the mean error, without them XYZ of any reflectance lies between black and white.
+//!   palette must not change colours on the canvas. No weight is negative: weights of either sign would reduce the mean
+//!   error by only a hundredth, and without them XYZ of any reflectance lies between black and white.
 //! - Paint mixes linearly in K and S. A film costs one exponential and one division a wavelength; the surface
 //!   correction is applied once, on top.
 //! - Views compute films on two threads or on a graphics device (`FilmBackend`), exports on the processor alone, for
@@ -56,8 +56,8 @@
 //! - Light is a pass over unlit colour, gloss and height, here for exports and in `ui/src/render/shaders` for the view;
 //!   a test compares the two. A level surface shows its film and the surface's own reflection k₁, times intensity and
 //!   exposure. A relief casts soft shadows up to 4 mm or 24 cells, hides the sky within 2 mm or 16 cells, and light
-//!   bounces between walls of the paint's own colour; so a changed tile relights the cells around it. A cell's
-//!   unresolved slopes add to its roughness, so coarse tiles keep the gloss of finer cells.
+//!   bounces between walls of the paint's own colour; so a changed tile affects the light of the cells around it. A
+//!   cell's unresolved slopes add to its roughness, so coarse tiles keep the gloss of finer cells.
 //! - Gamut and encoding follow light: hues are kept in Oklab, or clamped as in the dissertation. sRGB and Display P3
 //!   are our own arithmetic with profiles of constant bytes; other ICC profiles go through `moxcms`, in the window
 //!   through a cube of 33³ colours.

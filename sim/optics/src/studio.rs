@@ -41,14 +41,14 @@ impl RuleKind {
 pub struct StudioSettings {
     /// The light's spectrum.
     pub light: Illuminant,
-    /// Whose eye.
+    /// Observer of the colours.
     pub observer: Observer,
     /// Choice of the wavelengths.
     pub rule: RuleKind,
     /// Their number; [`RuleKind::Reference`] takes all 101.
     pub samples: usize,
-    /// True if the eye is adapted to the light's white, so that the perfect diffuser is (1, 1, 1); if
-    /// not, the light's cast stays.
+    /// True if the eye is adapted to the light's white, so that the perfect diffuser is (1, 1, 1); otherwise the
+    /// light's cast stays.
     pub adapted: bool,
 }
 
@@ -133,7 +133,7 @@ impl Under<'_> {
     }
 }
 
-/// A film over what lies under it, for a run of cells.
+/// A film over its ground, for a run of cells.
 #[derive(Clone, Copy, Debug)]
 pub struct FilmPlanes<'a> {
     /// Slot of the paint and its thickness in each cell, m; all of one length.
@@ -145,7 +145,7 @@ pub struct FilmPlanes<'a> {
 }
 
 impl FilmPlanes<'_> {
-    /// Makes `sums` K·d and S·d of cells `start`.. at a wavelength.
+    /// Writes K·d and S·d of cells `start`.. at a wavelength to `sums`.
     #[inline]
     fn thickness(
         &self,
@@ -169,8 +169,7 @@ impl FilmPlanes<'_> {
         }
     }
 
-    /// Adds K·d and S·d of some paints, one after the other; several at once spare the sums their way
-    /// through memory.
+    /// Adds K·d and S·d of several paints; several at once reduce the memory traffic of the sums.
     #[inline]
     fn add<const N: usize>(
         &self,
@@ -240,7 +239,7 @@ impl Studio {
         self.rule.len()
     }
 
-    /// Number of paints: their slots lie below it.
+    /// Number of paints; all slots are below it.
     #[must_use]
     pub fn slots(&self) -> usize {
         self.paints.len()
@@ -292,11 +291,11 @@ impl Studio {
         &self.to_rgb
     }
 
-    /// Linear sRGB, without gloss, of one film over what lies under it. `rgb` are the planes of red,
-    /// green and blue, as long as those of the paints.
+    /// Linear sRGB, without gloss, of one film over its ground. `rgb` are the planes of red, green and blue, as long as
+    /// those of the paints.
     ///
-    /// One exponential and one division a sample: the film over its ground is n/m (see
-    /// [`film_over_f32`]), and the surface makes (1−k₁)(1−k₂)·n/(m − k₂·n) of it.
+    /// One exponential and one division a sample: the film over its ground is n/m (see [`film_over_f32`]), and the
+    /// surface turns it into (1−k₁)(1−k₂)·n/(m − k₂·n).
     pub fn shade(&self, films: &FilmPlanes<'_>, rgb: [&mut [f32]; 3]) {
         let [red, green, blue] = rgb;
         let cells = red.len();
@@ -333,8 +332,8 @@ impl Studio {
         }
     }
 
-    /// Internal reflectance of one film over what lies under it, a plane of `cells` a wavelength: what
-    /// dries becomes the ground of all that is painted over it (Baxter 2004, § 7.8).
+    /// Internal reflectance of one film over its ground, a plane of `cells` a wavelength: a dried film becomes the
+    /// ground of later paint (Baxter 2004, § 7.8).
     #[must_use]
     pub fn bake(&self, films: &FilmPlanes<'_>, cells: usize) -> Vec<f32> {
         let mut baked = vec![0.0f32; self.rule.len() * cells];

@@ -18,7 +18,7 @@ pub struct Viewing {
     to_rgb: [[f64; 3]; 3],
 }
 
-/// A colour that is seen.
+/// A visible colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
     /// XYZ, Y = 1 for the perfect diffuser.
@@ -52,7 +52,7 @@ impl Viewing {
         self.white
     }
 
-    /// The colour of reflectances at the rule's wavelengths, kept from black to white.
+    /// The colour of reflectances at the rule's wavelengths, clamped between black and white.
     #[must_use]
     pub fn see(&self, reflectances: &[f64]) -> Seen {
         let xyz = self.rule.xyz(reflectances);

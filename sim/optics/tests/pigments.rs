@@ -1,10 +1,10 @@
-//! What every painter knows of some paints, as mixing by light would never have it. Beside each
-//! mixture stands the linear RGB blend of the same masstones, which must fail.
+//! Common knowledge of painters about some paints, which mixing light would contradict. Beside each mixture stands the
+//! linear RGB blend of the same masstones, which must fail.
 
 use maulstick_optics::{Blend, Coat, Paint, PaintLibrary, RuleKind, Seen, StudioSettings, Viewing};
 
 type Parts<'a> = &'a [(&'a str, f64)];
-/// How paints become a colour.
+/// Conversion of paints to a colour.
 type Mixing<'a> = &'a dyn Fn(Parts<'_>) -> Seen;
 
 struct Paints {

@@ -8,7 +8,7 @@ use maulstick_optics::{Illuminant, Observer, Paint, PaintLibrary, SamplingRule, 
 
 use support::held_out;
 
-/// How far a rule is off, ΔE₀₀.
+/// Errors of a rule, ΔE₀₀.
 #[derive(Debug)]
 struct Off {
     sorted: Vec<f64>,

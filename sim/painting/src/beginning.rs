@@ -1,5 +1,4 @@
-//! The beginning of a painting's record: the whole painting at the place of its journal from which what was accepted
-//! since can be executed again.
+//! The beginning of a painting's record: the whole painting at the place of its journal from which it can be replayed.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -33,10 +32,10 @@ pub struct Beginning {
 /// Change of a record at a checkpoint.
 #[derive(Clone, Debug)]
 pub enum RecordChange {
-    /// What was accepted since the last checkpoint is added to it.
+    /// Messages accepted since the last checkpoint are added to it.
     Continues,
-    /// It begins anew at the checkpoint.
+    /// A new record begins at the checkpoint.
     Begins(Arc<Beginning>),
-    /// None is kept.
+    /// No record is kept.
     Ends,
 }

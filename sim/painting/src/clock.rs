@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 /// Most rounds of a drying, and the fewest ticks of one.
 const ROUNDS: u32 = 32;
 const ROUND_TICKS: u32 = 30;
-/// A brush counts as painting for so many ticks after it was last in contact, .2 s: contacts less than
-/// 150 ms apart are one stroke.
+/// Number of ticks after its last contact for which a brush counts as painting, .2 s: contacts less than 150 ms apart
+/// are one stroke.
 const LIFTED_TICKS: u32 = 12;
 /// Ticks for which a brush in contact counts as painting although no state arrives.
 const STILL_TICKS: u32 = 120;
 
-/// A drying that goes on.
+/// A drying in progress.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Drying {
     /// The surface.
@@ -38,16 +38,16 @@ pub struct Drying {
 /// had gone by at `to`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Round {
-    /// Ticks.
+    /// First tick.
     pub from: u32,
-    /// Ticks.
+    /// Last tick.
     pub to: u32,
     /// Index of the next tile, row after row from the bottom.
     pub next: u32,
 }
 
 impl Drying {
-    /// The round that is to be gone on with now.
+    /// The round that is due now.
     pub(crate) fn due(&self) -> Option<Round> {
         let least = (self.ticks / ROUNDS).max(ROUND_TICKS);
         let is_due = self.elapsed >= self.ticks || self.elapsed - self.reached >= least;
@@ -75,13 +75,13 @@ pub struct Clock {
     pub ticks: u64,
     /// Ticks since a brush was last in contact.
     pub quiet: u32,
-    /// The dryings that go on, one a surface at most.
+    /// Dryings in progress, at most one a surface.
     pub dryings: Vec<Drying>,
 }
 
 impl Clock {
-    /// A tick goes by. Returns the rounds that are due, by surface: none while a brush paints, so that no tile dries
-    /// under it, and no stroke is split.
+    /// Advances by a tick. Returns the rounds that are due, by surface: none while a brush paints, so that no tile
+    /// dries under it, and no stroke is split.
     pub(crate) fn tick(&mut self, in_contact: bool) -> Vec<(u32, Round)> {
         self.ticks += 1;
         self.quiet = self.quiet.saturating_add(1);
@@ -101,8 +101,7 @@ impl Clock {
         due.collect()
     }
 
-    /// Ends the drying of a surface, if one goes on there, or of all surfaces: what is wet still stays wet. True if any
-    /// ended.
+    /// Ends the drying of a surface, or of all surfaces: paint that is still wet stays wet. True if any ended.
     pub(crate) fn stop(&mut self, surface: Option<u32>) -> bool {
         let count = self.dryings.len();
         let stays = |drying: &Drying| surface.is_some_and(|surface| drying.surface != surface);

@@ -1,8 +1,7 @@
 //! The ledger: origin and whereabouts of all paint.
 //!
-//! Tube, cleaner and the brush modes that give or take paint are booked at every transfer; brush, canvas and palette
-//! are counted afresh from their planes. The paint that tubes and modes gave must be found in the others to the
-//! quantum.
+//! Tube, cleaner and the brush modes that create or remove paint are booked at every transfer; brush, canvas and
+//! palette are counted from their planes. The paint from tubes and modes must be in the others to the quantum.
 
 use std::collections::BTreeMap;
 
@@ -27,12 +26,12 @@ impl Ledger {
         pairs.for_each(|(own, count)| *own += count);
     }
 
-    /// A mode gave.
+    /// Books paint from a mode.
     pub fn from_mode_counts(&mut self, counts: &Counts) {
         self.from_mode(&counts.map(|count| count as i64));
     }
 
-    /// The tubes gave.
+    /// Books paint from the tubes.
     pub fn from_tube(&mut self, counts: &Counts) {
         add(&mut self.tube, counts);
     }
@@ -62,7 +61,7 @@ impl Ledger {
         covers(&self.tube, &booked.tube) && covers(&self.cleaner, &booked.cleaner)
     }
 
-    /// Books again what was booked, `times` 1, or takes it back, −1.
+    /// Repeats bookings with `times` 1, or reverses them with −1.
     pub fn book(&mut self, booked: &Booked, times: i64) {
         let turn = |own: &mut Counts, booked: &[i64; SLOTS]| {
             for (own, booked) in own.iter_mut().zip(booked) {
@@ -74,7 +73,7 @@ impl Ledger {
         self.from_mode(&booked.mode.map(|count| times * count));
     }
 
-    /// By slot, what tubes and modes gave less what the cleaner took: as much is to be found.
+    /// Expected paint by slot: that from tubes and modes less that to the cleaner.
     #[must_use]
     pub fn due(&self) -> [i64; SLOTS] {
         std::array::from_fn(|slot| {
@@ -83,7 +82,7 @@ impl Ledger {
         })
     }
 
-    /// The cleaner took.
+    /// Books paint to the cleaner.
     pub fn to_cleaner(&mut self, counts: &Counts) {
         add(&mut self.cleaner, counts);
     }
@@ -99,8 +98,7 @@ pub struct Booked {
 }
 
 impl Booked {
-    /// By slot, what came from tubes and modes less what went to the cleaner: by as much there is
-    /// more to be found.
+    /// Expected gain by slot: paint from tubes and modes less paint to the cleaner.
     #[must_use]
     pub fn due(&self) -> [i64; SLOTS] {
         std::array::from_fn(|slot| {
@@ -109,7 +107,7 @@ impl Booked {
         })
     }
 
-    /// Adds what was booked then.
+    /// Adds later bookings.
     pub fn add(&mut self, later: &Self) {
         let sum = |own: &mut [i64; SLOTS], later: &[i64; SLOTS]| {
             own.iter_mut()
@@ -135,8 +133,7 @@ pub(crate) struct Stocks {
     pub dry: BySlot<u64>,
 }
 
-/// The ledger as a file; volumes in m³, what tubes and modes gave is negative, so that all accounts sum
-/// to zero.
+/// The ledger as a file; volumes in m³, with those from tubes and modes negative, so that all accounts sum to zero.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LedgerReport {
     /// Volume of all paints by account, m³.

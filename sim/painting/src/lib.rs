@@ -10,8 +10,8 @@
 //! | [`sequencer`] | the order of states and commands |
 //! | [`setup`] | the scene of a new painting |
 //! | [`ledger`], [`history`] | the books, undo |
-//! | [`beginning`] | where the record of what was accepted begins |
-//! | [`edits`] | all that changes a painting besides strokes, one in one file |
+//! | [`beginning`] | beginning of the record |
+//! | [`edits`] | all changes of a painting besides strokes, each in its own file |
 //! | [`clock`] | ticks, and the dryings that they drive |
 //! | [`snapshot`] | the part of a document that is not tiles |
 //! | [`picture`] | pictures of its surfaces |
@@ -46,28 +46,28 @@
 //!
 //! # Order and journal
 //!
-//! - The sequencer alone decides order: what it accepts, brush states and commands, gets an index and goes into the
-//!   journal in that order.
-//! - An undo more than half a second ahead of the paint drops the states of its stroke that still wait: they are
-//!   consumed unpainted, a journal entry `Cut` names them, and what was painted of the stroke is undone.
+//! - The sequencer alone decides the order: accepted brush states and commands get an index and go into the journal in
+//!   that order.
+//! - An undo more than half a second ahead of the paint drops the waiting states of its stroke: they are consumed
+//!   unpainted, a journal entry `Cut` names them, and the painted part of the stroke is undone.
 //! - While a session is repeated, live states are consumed unpainted, edits and takes of others are refused, and only
 //!   the session's ticks pass; files are still written.
 //!
 //! # Time
 //!
 //! Ticks of 1/60 s in the journal. The paint node enters them by its clock while something dries, at most 60 a turn;
-//! offline they follow the take or a script's `wait`; a replay follows the journal. A drying takes 32 tiles a tick at
-//! most, and none while a brush is in contact, so no stroke is divided.
+//! offline they follow the take or a script's `wait`; a replay follows the journal. A drying takes at most 32 tiles a
+//! tick, and none while a brush is in contact, so no stroke is divided.
 //!
 //! # Undo
 //!
 //! - A step is the tiles before and after, loads and bookings, as a difference. Each brush has its own open step; when
 //!   it reaches a tile that another open step has reached, that one ends, so no two open steps share a tile. A step can
 //!   be undone while nothing later lies on what it changed.
-//! - Over the quota the two oldest steps become one; the newest sixteen stay apart, and so do those before and since a
-//!   take began.
-//! - The beginning is the whole painting at the place from which the record can be executed again. It shares pages and
-//!   has no finished steps, which would keep every older page; undoing one begins the record anew.
+//! - Over the quota the two oldest steps are merged; the newest sixteen stay separate, and so do those before and since
+//!   a take began.
+//! - The beginning is the whole painting at the place from which the record can be replayed. It shares pages and has no
+//!   finished steps, which would keep every older page; undoing one starts a new record.
 //!
 //! # Surfaces and brushes
 //!

@@ -44,7 +44,7 @@ pub fn picture(painting: &mut Painting, surface: u32) -> Picture {
     picture_for(painting, surface, &Export::default())
 }
 
-/// The picture of a surface under the scene's lamp, a pixel a cell.
+/// The sequencer, which alone decides about the entries of the journal and their order.
 pub fn picture_for(painting: &mut Painting, surface: u32, export: &Export) -> Picture {
     whole(lit_drawing(painting, surface, export))
 }

@@ -1,4 +1,4 @@
-//! The sequencer: it decides what enters the journal and in which order; nothing else does.
+//! The sequencer, which alone decides about the entries of the journal and their order.
 
 mod cut;
 mod records;
@@ -22,7 +22,7 @@ use crate::snapshot::{CutStates, TakeSnapshot};
 /// Effect of a command on the outside world; carried out at once by the caller of the sequencer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// Write the picture and, if asked, the ledger.
+    /// Write the picture and, on request, the ledger.
     Snapshot {
         /// A PNG.
         path: String,
@@ -108,7 +108,7 @@ impl Sequencer {
         self.painting
     }
 
-    /// The painting, for what is not journalled: committing, counting, defining brushes.
+    /// The painting, for operations outside the journal: committing, counting, defining brushes.
     pub fn painting_mut(&mut self) -> &mut Painting {
         &mut self.painting
     }
@@ -146,11 +146,11 @@ impl Sequencer {
     }
 
     /// Accepts a state, which must come in order, and then the commands that waited for it; returns the outcomes of
-    /// these and of it. A state that does not fit is refused, and consumed all the same.
+    /// all. A state that does not fit is refused, but still consumed.
     ///
-    /// A state of an unannounced replayed take paints nothing, nor does a live one from the announcement of a take to
-    /// its last state: a take paints the same whatever else moves. Nor does one that an [undo](Self::command_behind)
-    /// has dropped.
+    /// A state of an unannounced replayed take paints nothing, and neither does a live one between the announcement of
+    /// a take and its last state, so that a take always paints the same. A state dropped by an
+    /// [undo](Self::command_behind) paints nothing either.
     #[must_use = "effects of the commands are still to be done"]
     pub fn state(
         &mut self,
@@ -190,12 +190,12 @@ impl Sequencer {
             self.painting.forget_loads(brush);
         }
         let painted = self.painting.state(brush, header.epoch, state);
-        self.tell_fall();
+        self.publish_backend_change();
         self.painting.note_contact(brush);
         painted
     }
 
-    /// Notes that a state is consumed.
+    /// Marks a state as consumed.
     fn pass(&mut self, header: &Header) {
         self.consumed
             .retain(|origin, _| origin.source != header.source || origin.epoch == header.epoch);
@@ -206,7 +206,7 @@ impl Sequencer {
         self.cut.retain(|cut| !is_past(cut));
     }
 
-    /// Notes that a state that may paint is consumed; the last one of a take ends it.
+    /// Marks a state that may paint as consumed; the last one of a take ends it.
     fn consume(&mut self, brush: &str, header: &Header) {
         if header.flags.has(Flags::REPLAY.with(Flags::LAST))
             && let Some(take) = self.announced.get_mut(brush)
@@ -216,7 +216,7 @@ impl Sequencer {
         self.pass(header);
     }
 
-    /// True if a state is of the announced take, or live while no take has its brush, and no undo has dropped it.
+    /// True if a state is of the announced take, or live while no take has its brush, and not dropped by an undo.
     fn may_paint(&self, brush: &str, header: &Header, state: &BrushState) -> bool {
         if self.repeats {
             return false;
@@ -237,7 +237,7 @@ impl Sequencer {
         self.gone.insert(device);
     }
 
-    /// A player is there, or there again.
+    /// Handles the arrival, or return, of a player.
     pub fn player_there(&mut self, device: u32) {
         self.gone.remove(&device);
     }
@@ -282,7 +282,7 @@ impl Sequencer {
         self.note(index, || Accepted::Entry(entry));
     }
 
-    /// A sixtieth of a second goes by: entered where something dries by itself, else nothing happens.
+    /// Advances by a sixtieth of a second: entered during a drying, otherwise ignored.
     pub fn tick(&mut self) {
         if self.painting.is_drying() && !self.repeats {
             self.enter_tick();
@@ -336,7 +336,7 @@ impl Sequencer {
         reply(Outcome::Waiting)
     }
 
-    /// Does the waiting commands whose state has come.
+    /// Does the waiting commands whose state has arrived.
     fn release(&mut self) -> Vec<Replied> {
         let mut replies = Vec::new();
         let mut place = 0;
@@ -407,7 +407,7 @@ impl Sequencer {
         index
     }
 
-    /// Carries out what takes its place in the journal besides edits.
+    /// Carries out a journalled command other than an edit.
     fn take(
         &mut self,
         command: &TakeCommand,
@@ -433,7 +433,7 @@ impl Sequencer {
         Ok(Applied::Done)
     }
 
-    /// Begins a take; what was painted of one that begins again is undone.
+    /// Begins a take; the paint of an earlier run of it is undone.
     fn begin_take(
         &mut self,
         brush: &str,
@@ -461,7 +461,7 @@ impl Sequencer {
         Ok(())
     }
 
-    /// Keeps what became of a command, also when its effect failed after all.
+    /// Stores the outcome of a command, also if its effect failed later.
     pub fn remember(&mut self, client: u64, number: u64, outcome: Outcome) {
         self.replies.keep(client, number, outcome);
     }

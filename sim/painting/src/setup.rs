@@ -160,9 +160,9 @@ fn palette_cells(cell_m: f64) -> [u32; 2] {
     PALETTE_M.map(|side| (side / cell_m).round().max(1.0) as u32)
 }
 
-/// Wells of a palette of so many cells, across and up, that hold these mixtures from the top: along its
-/// right edge, toward the canvas, smaller where they are many, so that they are within reach while the rest of the
-/// palette is not. Beside the lowest stands the cleaner, above it the medium.
+/// Wells with these mixtures for a palette of `cells`, across and up, from the top: along its right edge, toward the
+/// canvas, smaller for many, so that they are within reach while the rest of the palette is not. The cleaner is beside
+/// the lowest, the medium above it.
 #[must_use]
 pub fn wells_of(mixtures: &[Mixture], cells: [u32; 2], cell_m: f64) -> Vec<Well> {
     let [width, height] = cells.map(f64::from);

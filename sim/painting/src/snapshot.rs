@@ -1,4 +1,4 @@
-//! Snapshots: a painting and its sequencer as a document saves them, without tiles, history and versions.
+//! Snapshots: a painting and its sequencer in the form of a document, without tiles, history and versions.
 
 use std::collections::BTreeMap;
 
@@ -12,23 +12,23 @@ use serde::{Deserialize, Serialize};
 use crate::clock::Clock;
 use crate::ledger::Ledger;
 
-/// A brush as the painting knows it.
+/// Saved state of a brush.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BrushSnapshot {
     /// Its file, TOML; in the document the file's hash.
     pub file: String,
-    /// The page of what it carries.
+    /// Page of its load.
     pub load: u64,
     /// Epoch of the brush and number of the newest stroke.
     pub stroke: Option<(u32, u64)>,
-    /// While it paints, on which surface, where it stepped last, and where it has come to since.
+    /// Its path while it paints: surface, place of its last step, and later position.
     pub path: Option<(u32, Scale, WaypointSnapshot, Option<WaypointSnapshot>)>,
     /// See `path`: the step before the last.
     #[serde(default)]
     pub before: Option<WaypointSnapshot>,
     /// Loads that its strokes take in turn, and the number of strokes since its take began.
     pub loads: Vec<Mixture>,
-    /// See `loads`.
+    /// Number of strokes; see `loads`.
     pub strokes: usize,
     /// Seed of the disorder of its bristles.
     pub seed: u64,
@@ -68,10 +68,10 @@ pub struct PaintingSnapshot {
     pub open_steps: Vec<OpenStepSnapshot>,
     /// Steps that were undone, the last one at the end.
     pub undone: Vec<u64>,
-    /// True if a step has ever changed more than what brushes carry.
+    /// True if any step has changed more than brush loads.
     #[serde(default)]
     pub has_changed_surfaces: bool,
-    /// The version from which the painter goes on.
+    /// The version on which the painter continues.
     pub line: Option<String>,
     /// Work that was done.
     #[serde(flatten)]
@@ -176,7 +176,7 @@ pub struct SequencerSnapshot {
     pub consumed: Vec<(u32, u32, u64)>,
     /// The newest reply to each client.
     pub replies: ReplyCache,
-    /// True in a file that a player has prepared for its session: nobody else paints in it until the player comes.
+    /// True in a file that a player has prepared for its session: only the player may paint in it.
     #[serde(default)]
     pub held: bool,
 }

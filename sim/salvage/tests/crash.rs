@@ -1,4 +1,4 @@
-//! What was committed outlives a power cut, and a check that would not see its loss is none.
+//! Commits survive a power cut, and the check detects their loss.
 
 #[path = "../../document/tests/crash_vfs/mod.rs"]
 mod crash_vfs;
@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::io::Cursor;
 use std::path::Path;
 
-use crash_vfs::{Deed, FileKind, Image, Log, VFS, watch, watch_by_default};
+use crash_vfs::{FileKind, FileOperation, Image, Log, VFS, watch, watch_by_default};
 use maulstick_salvage::sqlite::{Scan, Value};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;
@@ -16,8 +16,7 @@ use rusqlite::{Connection, OpenFlags, params};
 /// Rows of each transaction.
 const ROWS: i64 = 3;
 
-/// What a session committed: for each transaction, from 1 on, the point at which its commit was
-/// called for and the one at which it returned.
+/// Commits of a session: for each transaction, from 1 on, the points of the log at which its commit began and returned.
 struct Session {
     log: Log,
     called: Vec<usize>,
@@ -156,7 +155,7 @@ fn committed_rows_outlive_a_power_cut_at_any_point() {
     let counts = [FileKind::Main, FileKind::Wal, FileKind::Journal].map(|kind| {
         let syncs = ops
             .iter()
-            .filter(|op| op.file == kind && op.deed == Deed::Sync);
+            .filter(|op| op.file == kind && op.operation == FileOperation::Sync);
         syncs.count()
     });
     assert!(
@@ -212,7 +211,7 @@ fn an_image_without_losses_is_the_files_themselves() {
     assert!(log.point() > 0);
     assert_eq!(log.image(&mut random, log.point()), Image::read_from(&path));
     assert_eq!(log.image(&mut random, 0), Image::default());
-    // What stands when the watch begins counts as synced.
+    // Contents at the beginning of the watch count as synced.
     let again = watch(&path);
     assert_eq!(again.image(&mut random, 0), Image::read_from(&path));
 }

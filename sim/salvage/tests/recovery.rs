@@ -1,4 +1,4 @@
-//! What is whole of a damaged painting comes back, and nothing comes back that never was.
+//! Intact parts of a damaged painting are recovered, and nothing that never existed.
 
 #[path = "../../document/tests/easel/mod.rs"]
 mod easel;
@@ -82,7 +82,7 @@ impl Painted {
             for (place, words) in tiles(&mut easel.sequencer) {
                 seen.entry(place).or_default().insert(words);
             }
-            // What a tile was in the midst of an act, where one step ended and another began.
+            // Content of a tile between two steps of one act.
             for step in easel.sequencer.painting().history().steps() {
                 for (place, change) in &*step.tiles {
                     let known = seen.entry(*place).or_default();
@@ -126,8 +126,7 @@ impl Painted {
         Ok((to, recovered?))
     }
 
-    /// Whether nothing of a tile was hurt: its row, its page and what that is a difference to, its
-    /// dry layers and theirs.
+    /// True if nothing of a tile was damaged: its row, its page with the base, its dry layers with theirs.
     fn is_untouched(&self, place: TilePlace, damaged: &Rows) -> bool {
         let mut next = vec![Key::Number(6, place_number(place))];
         while let Some(key) = next.pop() {
@@ -181,7 +180,7 @@ impl Painted {
                 return Err(Wrong::Unnamed(*place));
             }
         }
-        // It can be painted on, and undone.
+        // Painting and undo work on it.
         let mut painter = self.painter.clone();
         for _ in 0..5 {
             let act = painter.next();
@@ -290,7 +289,7 @@ proptest! {
         prop_assert_eq!(store.counts(), [0; SLOTS], "all is undone");
     }
 
-    /// A file that was not closed, with its log and what is to be done again.
+    /// A file that was not closed, with its log and records to replay.
     #[test]
     fn a_painting_that_was_not_closed_comes_back(seed in any::<u64>(), acts in 1usize..40) {
         let folder = tempfile::tempdir().expect("a folder");

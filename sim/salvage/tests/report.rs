@@ -1,4 +1,4 @@
-//! A report names what an edited file has lost, and nothing else.
+//! A report names the losses of an edited file, and nothing else.
 
 #[path = "../../document/tests/easel/mod.rs"]
 mod easel;

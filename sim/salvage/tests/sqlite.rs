@@ -317,7 +317,7 @@ proptest! {
         exhaust(&main, wal.as_deref());
     }
 
-    /// Random bytes with what a database has at the starts of its pages.
+    /// Random bytes with the beginnings of a database's pages.
     #[test]
     fn random_leaves_are_survived(
         mut main in prop::collection::vec(any::<u8>(), 4_000..20_000),

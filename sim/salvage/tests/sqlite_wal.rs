@@ -121,7 +121,7 @@ fn what_stands_behind_the_damage_comes_out_apart() {
         assert!(scan.wal().damaged && scan.wal().frames_past_damage > 0);
         assert!(whole.is_subset(&out), "{:?}", whole.difference(&out));
     }
-    // Without the WAL's header every frame but the first can still be told to be whole.
+    // Without the WAL's header all frames but the first can still be verified.
     let mut files = logged.files.clone();
     files.wal = Some(wal);
     files.wal.as_mut().expect("a WAL")[..WAL_HEADER].fill(0);
@@ -154,7 +154,7 @@ fn an_unfinished_transaction_is_not_current() {
     let committed = tables.rows.clone();
     let length = |files: &Files| files.wal.as_ref().map_or(0, Vec::len);
     let before = length(&tables.files());
-    // A small cache spills what is not committed into the WAL.
+    // A small cache spills uncommitted pages into the WAL.
     let begin = "PRAGMA cache_size = 10; BEGIN";
     tables.db.execute_batch(begin).expect("begins");
     tables.fill(30);
@@ -163,7 +163,7 @@ fn an_unfinished_transaction_is_not_current() {
     assert_eq!(unfinished.scan().wal().frames_past_damage, 0);
     assert!(current(&unfinished).iter().eq(committed.keys()));
 
-    // What comes next is written over the first of these frames.
+    // Later writes overwrite the first of these frames.
     tables.db.execute_batch("ROLLBACK").expect("is rolled back");
     tables.rows = committed;
     tables.insert("notes", 20);

@@ -1,4 +1,4 @@
-//! Paints with a brush that goes through given poses, as a robot's would, and writes the picture:
+//! Paints with a brush that follows given poses, like a robot's, and writes the picture:
 //!
 //! ```text
 //! cargo run --release -p maulstick-session --example paint_poses -- picture.png [poses.csv]

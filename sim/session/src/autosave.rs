@@ -3,10 +3,10 @@
 use maulstick_document::{Checkpoint, Document, DocumentError};
 use maulstick_painting::Sequencer;
 
-/// Time between two checkpoints, ns: as much is done again after a crash at most.
+/// Time between two checkpoints, ns: the most that is repeated after a crash.
 const PERIOD_NS: u64 = 1_000_000_000;
 
-/// A painting's document, and what it knows of it.
+/// A painting's document, and its state.
 #[derive(Debug)]
 pub struct Autosave {
     document: Document,
@@ -28,7 +28,7 @@ impl Autosave {
             serial: 0,
             saved_ns: 0,
         };
-        autosave.hand_over(sequencer);
+        autosave.save_to_document(sequencer);
         autosave
     }
 
@@ -38,12 +38,12 @@ impl Autosave {
         &self.document
     }
 
-    /// The document, to be asked what became of its move.
+    /// The document, for the result of its move.
     pub fn document_mut(&mut self) -> &mut Document {
         &mut self.document
     }
 
-    /// Lets go of a document into which nothing could be written: the painting is in memory alone.
+    /// Closes a document that could not be written: the painting is in memory alone.
     pub fn abandon(self, sequencer: &mut Sequencer) {
         sequencer.stop_recording();
         if let Err(error) = self.document.close() {
@@ -51,7 +51,7 @@ impl Autosave {
         }
     }
 
-    fn hand_over(&mut self, sequencer: &mut Sequencer) {
+    fn save_to_document(&mut self, sequencer: &mut Sequencer) {
         let painting = sequencer.painting_mut();
         if self.document.wants_all() {
             painting.tell_all_again();
@@ -68,8 +68,8 @@ impl Autosave {
         self.document.write_checkpoint(checkpoint);
     }
 
-    /// Hands over what was accepted since, and each second a checkpoint. The journal of the sequencer was
-    /// taken before.
+    /// Hands over the records accepted since, and each second a checkpoint. The journal of the sequencer was taken
+    /// before.
     pub fn turn(&mut self, sequencer: &mut Sequencer, now_ns: u64) {
         self.document.update_path();
         self.document.record(sequencer.take_records());
@@ -77,7 +77,7 @@ impl Autosave {
         let is_new = sequencer.serial() != self.serial || self.document.wants_all();
         if due && is_new && self.document.is_ready() {
             self.saved_ns = now_ns;
-            self.hand_over(sequencer);
+            self.save_to_document(sequencer);
         }
     }
 
@@ -86,12 +86,12 @@ impl Autosave {
         self.document.record(sequencer.take_records());
         self.document.flush();
         if self.document.is_ready() {
-            self.hand_over(sequencer);
+            self.save_to_document(sequencer);
             self.document.flush();
         }
         // The file may have turned out to lack a part of the painting: then it gets all of it.
         if self.document.wants_all() && self.document.is_ready() {
-            self.hand_over(sequencer);
+            self.save_to_document(sequencer);
             self.document.flush();
         }
         self.document.is_saved()

@@ -2,15 +2,15 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`offline`] | samples in, a painting out: the same bytes as a rig that heard them |
-//! | [`autosave`] | a painting kept in its document as it grows |
-//! | [`recorded`] | a recorded session as what its painting accepted |
-//! | [`reexecution`] | the record of a document, executed again |
+//! | [`offline`] | samples in, a painting out: the same bytes as from a rig |
+//! | [`autosave`] | a painting saved continually in its document |
+//! | [`recorded`] | a recorded session as the records accepted by its painting |
+//! | [`reexecution`] | replay of a document's record |
 //! | [`work_clock`] | working time of a record, without pauses |
-//! | [`painting_log`](mod@painting_log) | who did what and when |
+//! | [`painting_log`](mod@painting_log) | senders, actions and times |
 //! | [`ticker`] | ticks of a clock |
 //!
-//! A stroke of a loaded flat, 40 mm long; the books of the painting are even to the quantum:
+//! A stroke of a loaded flat, 40 mm long; the ledger of the painting balances to the quantum:
 //!
 //! ```
 //! use maulstick_brush::BrushFile;
@@ -45,8 +45,8 @@
 //!
 //! # Notes
 //!
-//! - A session is a recording with the painting as it was, so journal and brush states give the accepted records, which
-//!   any sequencer accepts again to the same bytes: `render` in a copy, `recording replay` in a rig.
+//! - A session is a recording with the painting at its beginning, so journal and brush states give the accepted
+//!   records, which any sequencer accepts again with the same bytes: `render` in a copy, `recording replay` in a rig.
 //! - Offline the brush runs on a thread ahead of the paint, and gives the bytes of a rig.
 
 pub mod autosave;

@@ -1,6 +1,5 @@
-//! The same brush and the same paint in one process, without a bus: what `maulstick render` runs.
-//! The messages that would have crossed the bus are handed on directly, so the painting is the
-//! same, byte for byte.
+//! The same brush and the same paint in one process, without a bus, for `maulstick render`. Messages are passed
+//! directly, so the painting is the same, byte for byte.
 
 use std::sync::mpsc;
 
@@ -15,8 +14,8 @@ use maulstick_types::{Flags, Header, Message as _, Mixture, Origin, name_hash};
 
 use crate::ticker::Ticker;
 
-/// So many states the brush may be ahead of the paint.
-const AHEAD: usize = 256;
+/// Greatest number of states by which the brush may be ahead of the paint.
+const STATES_AHEAD_MAX: usize = 256;
 
 /// Brush and paint, driven by samples.
 #[derive(Debug)]
@@ -48,10 +47,9 @@ impl Offline {
         Self::resume(Sequencer::new(painting), brush, file, depth_share, loads)
     }
 
-    /// As [`new`](Self::new), over a painting that continues where its sequencer is.
+    /// [`new`](Self::new) with a painting that continues at its sequencer's state.
     ///
-    /// # Errors
-    /// As [`new`](Self::new).
+    /// # Errors As [`new`](Self::new).
     pub fn resume(
         mut sequencer: Sequencer,
         brush: &str,
@@ -85,10 +83,9 @@ impl Offline {
         Ok(offline)
     }
 
-    /// Puts the brush down and takes up another one, with what it carried when it was put down; the take before has ended.
+    /// Puts the brush down and takes up another one, with its last load; the take before has ended.
     ///
-    /// # Errors
-    /// [`EditError`] where the painting refuses it.
+    /// # Errors [`EditError`] where the painting refuses it.
     pub fn take_up(
         &mut self,
         brush: &str,
@@ -117,11 +114,11 @@ impl Offline {
         self.ticker.pause();
         let player = [self.player.source, self.player.epoch];
         self.sequencer.begin_own_take(&self.brush, player, loads)?;
-        self.follow_scene();
+        self.update_scene();
         Ok(())
     }
 
-    /// Samples so far that were faster than a hand (`maulstick_brush::speed_limit`): the brush began anew at each.
+    /// Number of samples faster than a hand (`maulstick_brush::speed_limit`), at each of which the brush restarted.
     #[must_use]
     pub fn too_fast(&self) -> u64 {
         self.too_fast_before + self.model.too_fast()
@@ -139,20 +136,20 @@ impl Offline {
     /// [`EditError`] where the painting refuses it.
     pub fn edit(&mut self, edit: impl Into<Edit>) -> Result<Applied, EditError> {
         let applied = self.sequencer.edit(edit)?;
-        self.follow_scene();
+        self.update_scene();
         Ok(applied)
     }
 
-    /// Has the brush follow what the scene says of it.
-    fn follow_scene(&mut self) {
+    /// Updates the brush from the scene.
+    fn update_scene(&mut self) {
         let scene = self.sequencer.painting_mut().scene();
         self.model.set_scene(scene);
         self.model.tune(scene.tuning(&self.brush));
         self.model.soak(scene.wetness(&self.brush));
     }
 
-    /// Lets `ticks` sixtieths of a second pass without painting. `each` is called after each second of them where
-    /// something dries; else nothing happens.
+    /// Lets `ticks` sixtieths of a second pass without painting. `each` is called after each second during a drying;
+    /// otherwise nothing happens.
     pub fn wait(&mut self, ticks: u32, mut each: impl FnMut(&mut Sequencer)) {
         let mut left = ticks;
         while left > 0 && self.sequencer.painting().is_drying() {
@@ -169,7 +166,7 @@ impl Offline {
     /// # Errors
     /// [`EditError`] where the painting refuses its state.
     pub fn sample(&mut self, event_ns: u64, sample: &StylusSample) -> Result<(), EditError> {
-        self.follow_with(Flags::NONE, &[(event_ns, sample)], |_, _| {})
+        self.follow_samples(Flags::NONE, &[(event_ns, sample)], |_, _| {})
     }
 
     /// Ends a take whose samples came one by one: a pen that still waits to be set down is.
@@ -197,11 +194,11 @@ impl Offline {
         samples: &[(u64, &StylusSample)],
         each: impl FnMut(&mut Sequencer, usize),
     ) -> Result<(), EditError> {
-        self.follow_with(Flags::LAST, samples, each)
+        self.follow_samples(Flags::LAST, samples, each)
     }
 
     /// Follows samples; the last of them has the flags `last`.
-    fn follow_with(
+    fn follow_samples(
         &mut self,
         last: Flags,
         samples: &[(u64, &StylusSample)],
@@ -236,10 +233,10 @@ impl Offline {
                 .try_for_each(paint);
         }
         std::thread::scope(|scope| {
-            let (bent, states) = mpsc::sync_channel(AHEAD);
+            let (bent, states) = mpsc::sync_channel(STATES_AHEAD_MAX);
             scope.spawn(move || {
                 for state in samples.iter().enumerate().flat_map(&mut bend) {
-                    // The painter has given up: what is wrong is said there.
+                    // The painter has stopped, and reports its error.
                     if bent.send(state).is_err() {
                         return;
                     }
@@ -310,7 +307,7 @@ impl Painter<'_> {
             sent_ns: event_ns,
         };
         *self.next += 1;
-        // However long a gap is, time passes only for what dries.
+        // However long a gap is, time passes only for a drying.
         let ticks = self.ticker.look(event_ns, u64::MAX);
         let sequencer = &mut *self.sequencer;
         let _ = (0..ticks).try_for_each(|_| {

@@ -1,4 +1,4 @@
-//! The log of a painting: who did what and when, of its record.
+//! The log of a painting from its record: senders, actions and times.
 
 use std::collections::BTreeMap;
 
@@ -15,8 +15,8 @@ use crate::work_clock::contacts;
 /// Something that was done.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Logged {
-    /// Time of the wall clock, ms since 1970: of a stroke that was not replayed its beginning, of all else when it was
-    /// written, a second later at most; `None` if it is not known.
+    /// Wall-clock time, ms since 1970: of the beginning of a live stroke, and otherwise of writing, at most a second
+    /// later; `None` if unknown.
     pub time_ms: Option<u64>,
     /// The event.
     pub what: LoggedWhat,
@@ -29,7 +29,7 @@ pub enum LoggedWhat {
     Stroke(LoggedStroke),
     /// A command.
     Command {
-        /// Its sender; 0 is the program that has the painting.
+        /// Its sender; 0 is the painting's program.
         client: u64,
         /// The command.
         command: Command,
@@ -41,7 +41,7 @@ pub enum LoggedWhat {
         /// Name of the brush.
         brush: String,
     },
-    /// A decision of the program: what computes the paint, that the painting was opened again.
+    /// A decision of the program: the backend, or the reopening of the painting.
     Decision(Decision),
     /// A brush was introduced, or changed.
     Brush(String),
@@ -60,18 +60,18 @@ pub struct LoggedStroke {
     pub surface: u32,
     /// Time from its first contact to its last, s.
     pub seconds: f64,
-    /// Length of the way of the handle along the surface, m.
+    /// Length of the handle's path along the surface, m.
     pub length_m: f64,
 }
 
-/// Times of the rig clock, which is the wall clock where the machine's is set, are later than this, ns: 2001-09-09.
+/// Least rig-clock time that is the wall clock of a machine with a set clock, ns: 2001-09-09.
 const WALL_NS: u64 = 1_000_000_000_000_000_000;
 
 /// A stroke that may continue.
 struct OpenStroke {
     /// Epoch of the brush and number of the stroke.
     stroke: (u32, u64),
-    /// Its place in the log.
+    /// Its index in the log.
     place: usize,
     begun_ns: u64,
     /// The newest place on the surface, m.

@@ -93,7 +93,7 @@ impl RecordedSession {
         }
     }
 
-    /// The session up to a place of the journal, that entry among it; what comes behind it is passed over.
+    /// The session up to and including a place of the journal; later records are skipped.
     #[must_use]
     pub fn until(self, place: u64) -> Self {
         Self {
@@ -108,16 +108,15 @@ impl RecordedSession {
         self.next
     }
 
-    /// Takes in a brush state.
+    /// Adds a brush state.
     pub fn state(&mut self, header: Header, state: BrushState) {
         let key = (header.source, header.epoch, header.seq);
         self.states.insert(key, (header, state));
     }
 
-    /// Takes in an entry of the journal; one from before the session is passed over.
+    /// Adds an entry of the journal; one from before the session is skipped.
     ///
-    /// # Errors
-    /// [`SessionFault::Another`], or [`SessionFault::Entries`] where some are missing before it.
+    /// # Errors [`SessionFault::Another`], or [`SessionFault::Entries`] where some are missing before it.
     pub fn entry(&mut self, header: &Header, entry: JournalEntry) -> Result<(), SessionFault> {
         if self.is_past() {
             return Ok(());
@@ -146,10 +145,10 @@ impl RecordedSession {
         Ok(())
     }
 
-    /// The next record, if it is whole.
+    /// The next complete record.
     ///
-    /// # Errors
-    /// [`SessionFault::State`] where a later state of the same brush has come, and that of the record has not.
+    /// # Errors [`SessionFault::State`] where a later state of the same brush has arrived, and that of the record has
+    /// not.
     pub fn next_record(&mut self) -> Result<Option<Record>, SessionFault> {
         let index = self.next;
         if self.is_past() {
@@ -177,7 +176,7 @@ impl RecordedSession {
                         }),
                     };
                 };
-                // Those before it were not accepted, and are needed no more.
+                // Earlier ones were not accepted, and are dropped.
                 let first = (key.0, key.1, 0);
                 let passed: Vec<StateKey> =
                     self.states.range(first..key).map(|(key, _)| *key).collect();
@@ -209,10 +208,9 @@ impl RecordedSession {
         self.next > self.last
     }
 
-    /// Checks that nothing is left over, and that the place up to which it is painted was reached.
+    /// Checks that nothing is left over, and that the requested place was reached.
     ///
-    /// # Errors
-    /// [`SessionFault`] with what is missing before it.
+    /// # Errors [`SessionFault`] with the missing part.
     pub fn end(&self) -> Result<(), SessionFault> {
         let (place, first) = (self.last, self.first);
         if place.checked_add(1).is_some_and(|next| next < first) {

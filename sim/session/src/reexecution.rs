@@ -1,4 +1,4 @@
-//! A painting's record executed again from its beginning: the same paint, and all that it was on the way.
+//! Replay of a painting's record from its beginning: the same paint, and all its intermediate states.
 
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -14,10 +14,10 @@ use maulstick_painting::{EditError, Painting, Sequencer};
 /// take back more than it did.
 const MEMORY: usize = 2 << 30;
 
-/// Hashes of what lies on each tile that has paint.
+/// Hashes of the contents of each painted tile.
 pub type TilePrints = BTreeMap<TilePlace, u64>;
 
-/// Hashes of the paint of a painting, tile by tile: equal where the same quanta lie in the same layers.
+/// Hashes of the paint of a painting, tile by tile: equal where the same quanta are in the same layers.
 pub fn tile_prints(painting: &mut Painting) -> TilePrints {
     painting.commit();
     let mut prints = TilePrints::new();
@@ -57,11 +57,10 @@ fn tile_print(tile: &Tile) -> u64 {
     hasher.finish()
 }
 
-/// Hands over what was accepted from a serial number on, in order, with the time of the wall clock when it was written,
-/// ms since 1970, if that is known.
+/// Passes on the records from a serial number on, in order, with the wall-clock time of writing, ms since 1970, if
+/// known.
 ///
-/// # Errors
-/// The first of `each`, or of a record that is not intact.
+/// # Errors The first of `each`, or of a record that is not intact.
 pub fn each_record<E: From<DocumentError>>(
     document: &Document,
     from: u64,
@@ -108,10 +107,9 @@ impl Reexecution {
         &mut self.sequencer
     }
 
-    /// Hands over what is left of the record, without executing it.
+    /// Passes on the rest of the record without replaying it.
     ///
-    /// # Errors
-    /// As [`each_record`].
+    /// # Errors As [`each_record`].
     pub fn look_ahead<E: From<DocumentError>>(
         &self,
         mut each: impl FnMut(&Record),

@@ -2,7 +2,6 @@
 
 use maulstick_painting::clock::TICKS_A_SECOND;
 
-/// A second, ns.
 const SECOND_NS: u64 = 1_000_000_000;
 
 /// Turns the time of a clock into ticks.
@@ -14,13 +13,14 @@ pub struct Ticker {
 }
 
 impl Ticker {
-    /// The clock shows this: ticks since the last look, at most `most`; others come with the next look.
+    /// Advances to a time of the clock: returns the ticks since the last call, at most `most`; the rest come with the
+    /// next call.
     pub fn look(&mut self, now_ns: u64, most: u64) -> u64 {
         let last_ns = self.last_ns.replace(now_ns).unwrap_or(now_ns);
         self.pass(now_ns.saturating_sub(last_ns), most)
     }
 
-    /// So much time went by: ticks of it, at most `most`; others come later.
+    /// Advances by a duration: returns its ticks, at most `most`; the rest come later.
     pub fn pass(&mut self, time_ns: u64, most: u64) -> u64 {
         self.rest += u128::from(time_ns) * u128::from(TICKS_A_SECOND);
         let ticks = (self.rest / u128::from(SECOND_NS)).min(u128::from(most));
@@ -28,7 +28,7 @@ impl Ticker {
         ticks as u64
     }
 
-    /// The time until the next look does not count.
+    /// Ignores the time until the next call.
     pub fn pause(&mut self) {
         self.last_ns = None;
     }

@@ -10,7 +10,7 @@ const PAUSE_NS: u64 = 1_000_000_000;
 /// Time of an edit, ns.
 const EDIT_NS: u64 = 250_000_000;
 
-/// Clock that stands still where nobody paints.
+/// Clock that stops during pauses.
 #[derive(Clone, Debug, Default)]
 pub struct WorkClock {
     worked_ns: u64,
@@ -19,7 +19,7 @@ pub struct WorkClock {
 }
 
 impl WorkClock {
-    /// Lets the time of a message go by; returns the working time after it, ns.
+    /// Advances to the time of a message; returns the working time after it, ns.
     pub fn pass(&mut self, record: &Record) -> u64 {
         match &record.what {
             Accepted::State { state, .. } => {
@@ -41,7 +41,7 @@ impl WorkClock {
             self.contact_ns = Some(time_ns);
             return;
         };
-        // Two brushes at once take turns; a take that begins anew begins another time.
+        // Two simultaneous brushes take turns; a restarted take begins another time.
         if time_ns > before_ns || before_ns - time_ns > PAUSE_NS {
             let passed_ns = time_ns.saturating_sub(before_ns);
             self.worked_ns += if passed_ns > PAUSE_NS { 0 } else { passed_ns };

@@ -1,4 +1,4 @@
-//! A mirrored motion paints the mirrored painting, up to what tooth and disorder of the bristles leave to chance.
+//! A mirrored motion paints the mirrored painting, except for the randomness of tooth and bristles.
 
 #[path = "../../motion/tests/hands/mod.rs"]
 mod hands;
@@ -71,7 +71,7 @@ fn in_mirror(mut sums: Vec<Vec<f64>>, mirror: Mirror) -> Vec<Vec<f64>> {
     sums
 }
 
-/// Share of the paint that lies elsewhere.
+/// Share of the paint at other places.
 fn off(one: &[Vec<f64>], other: &[Vec<f64>]) -> f64 {
     let (one, other) = (one.iter().flatten(), other.iter().flatten());
     let all: f64 = one.clone().sum();
@@ -82,7 +82,7 @@ fn off(one: &[Vec<f64>], other: &[Vec<f64>]) -> f64 {
 /// A slanted brush drawn in two strokes, by a pen and by a 6-DOF stylus.
 fn hands_of(kind: &str) -> [(&'static str, Vec<TakeSample>); 2] {
     let length_m = brush(kind).length_m();
-    // The hand knows another head: that of the brush is so much shorter.
+    // The hand has another head: the brush's is shorter by this.
     let lower_m = HEAD_M - length_m;
     let ways = [
         [[-0.035, -0.03], [0.03, -0.01]],

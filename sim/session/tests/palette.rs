@@ -160,7 +160,7 @@ fn every_brush_that_is_set_down_prints_as_if_it_moved_a_little() {
     }
 }
 
-/// A press that does not move does what one does that moves a little.
+/// A press without motion has the effect of one with a small motion.
 #[test]
 fn a_brush_that_is_set_down_loads_prints_and_is_cleaned() {
     let mut hand = Hand::new();
@@ -213,7 +213,7 @@ fn a_well_never_runs_out_and_never_gets_dirty() {
     for _ in 0..3 {
         hand.drag_through(white);
     }
-    // What a brush finds there is the well's own paint: the cells under it are renewed.
+    // A brush finds the well's own paint there, because the cells under it are renewed.
     let cleaner = hand.well(None);
     hand.drag_through(cleaner);
     hand.drag_through(white);
@@ -316,7 +316,7 @@ fn wells_beside_the_palette_or_of_unknown_paint_are_refused() {
     assert_eq!(hand.palette(), before, "a refused command changes nothing");
 }
 
-/// Mean green of the canvas, 0 to 255, over the cells that have wet paint, and the volumes on it, m³: of all paint and of
+/// Mean green of the canvas, 0 to 255, over the cells with wet paint, and the volumes on it, m³: of all paint and of
 /// the medium.
 fn film(hand: &mut Hand) -> (f64, f64, f64) {
     let painting = hand.offline.painting_mut();
@@ -327,7 +327,7 @@ fn film(hand: &mut Hand) -> (f64, f64, f64) {
         let Some(tile) = &version.tile else { continue };
         let wet = tile.wet();
         for at in 0..TILE * TILE {
-            // Edges, where there is next to nothing, count for no film.
+            // Almost empty edges do not count as film.
             let film: f32 = wet.iter().map(|(_, plane)| plane[at]).sum();
             if f64::from(film) * QUANTUM_M > 5e-6 {
                 let (x, y) = (
@@ -380,7 +380,7 @@ fn the_jar_of_medium_thins_what_the_brush_carries() {
         assert!(light > dark + 4.0, "the ground shines through: {films:?}");
         assert!(thin - more < all - medium, "it has less pigment: {films:?}");
     }
-    // Nothing stays in the jar, and it never runs out.
+    // The jar stays pure, and never runs out.
     for hand in &mut hands {
         let jar = hand.well(Some("Thinner"));
         let palette = hand.palette();

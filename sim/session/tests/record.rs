@@ -1,5 +1,5 @@
-//! The record of a painting that was painted in its document, closed and continued: executed again it gives the same
-//! paint, and its log says what was done.
+//! Replaying the record of a painting that was painted in its document, closed and continued gives the same paint, and
+//! its log lists the actions.
 
 use std::path::Path;
 
@@ -66,7 +66,7 @@ impl Desk {
 
     fn edit(&mut self, edit: impl Into<maulstick_types::Edit>) {
         self.offline.edit(edit).expect("done");
-        self.turn();
+        self.autosave_now();
     }
 
     fn load(&mut self, mixture: &str) {
@@ -95,10 +95,10 @@ impl Desk {
             self.offline.sample(self.now_ns, &sample).expect("painted");
         }
         self.now_ns += 5000 * MS;
-        self.turn();
+        self.autosave_now();
     }
 
-    fn turn(&mut self) {
+    fn autosave_now(&mut self) {
         self.now_ns += 1000 * MS;
         self.autosave
             .turn(self.offline.sequencer_mut(), self.now_ns);
@@ -112,7 +112,7 @@ impl Desk {
     }
 }
 
-/// A painting with strokes, loads, layers, drying, undo and redo, which was closed and continued.
+/// A painting with strokes, loads, layers, drying, undo and redo, closed and continued.
 fn paint(path: &Path) {
     let mut desk = Desk::at(path);
     desk.load("Cobalt Blue=0.7,Titanium White=0.3");
@@ -131,7 +131,7 @@ fn paint(path: &Path) {
         ..Dry::whole(CANVAS)
     });
     desk.offline.wait(60, |_| {});
-    desk.turn();
+    desk.autosave_now();
     desk.close();
     let mut desk = Desk::at(path);
     desk.load("Pyrrole Red");

@@ -1,5 +1,5 @@
-//! Speed of dAb on the graphics device along the paths of `maulstick bench paint --model dab` (Baxter 2004, table 4.2), what its
-//! steps move beside the time of a copy of as many bytes, and how far its counts are from the processor's:
+//! Speed of dAb on the graphics device along the paths of `maulstick bench paint --model dab` (Baxter 2004, table 4.2),
+//! its memory traffic compared with a copy of the same bytes, and the difference of its counts from the processor's:
 //! `cargo run --release -p maulstick-bench --example dab_speed [ROUNDS [PART OF A NAME]]`.
 
 use std::time::Instant;
@@ -28,7 +28,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// Bytes that a copy goes over a second, counted once where they are read and once where they are written.
+/// Bandwidth of a copy, bytes/s, counting reads and writes once each.
 fn copied_per_s(gpu: &Device, rounds: usize) -> Result<f64, GpuError> {
     let side = SIDE as usize;
     let mut measured = Measured::new(gpu.clone(), side, COPIED)?;
@@ -56,7 +56,7 @@ impl Stroke<'_> {
         (report.footprint_cells, begun.elapsed().as_secs_f64())
     }
 
-    /// What the first step touches, which goes with the upload.
+    /// Number of cells touched by the first step, which includes the upload.
     fn first_cells(&mut self) -> u64 {
         self.trial.wet();
         let report = self.trial.stroke(&mut self.model, &self.poses[..2]);
@@ -91,7 +91,7 @@ fn counts(trial: &Trial, load: &BrushLoad) -> (Vec<f32>, u64) {
     (lies, sum + load.total())
 }
 
-/// How the same stroke differs that the processor paints.
+/// Difference from the same stroke on the processor.
 fn compare(stroke: &mut Stroke<'_>, stroker: Stroker) {
     let poses = stroke.poses.clone();
     let mut painted = |model: &mut dyn PaintModel| {

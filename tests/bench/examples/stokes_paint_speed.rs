@@ -11,7 +11,7 @@ use maulstick_model::trial::Trial;
 use maulstick_num::fork_join::with_threads;
 use maulstick_stokes_paint::StokesPaint;
 
-/// Widths of the brush, mm, where none is asked for.
+/// Default widths of the brush, mm.
 const WIDTHS_MM: [f64; 3] = [8.0, 24.0, 48.0];
 /// Cells either way, and their side, m.
 const SIDE: u32 = 512;

@@ -12,7 +12,7 @@ use maulstick_stokes::grid::Grid;
 use maulstick_stokes::rheology::Paint;
 use maulstick_stokes_paint::device::{GpuFlow, Paints, Tuning};
 
-/// Sizes where none is asked for: the benchmark's, and the plan's for a discrete processor.
+/// Default sizes: the benchmark's, and the plan's for a discrete processor.
 const SIZES: [[usize; 3]; 2] = [[32, 32, 16], [128, 128, 64]];
 /// Length of a round, rounds, and the time after which there is no other round.
 const ROUND: Duration = Duration::from_millis(500);

@@ -1,5 +1,4 @@
-//! The advection by itself: how fast it goes through its planes, by how fast a plain copy of them does in as
-//! many parts.
+//! The advection alone: its speed relative to a plain copy of its planes in as many parts.
 
 use std::time::Duration;
 
@@ -20,7 +19,7 @@ const SIDE: usize = 512;
 const PAINTS: usize = 4;
 /// Rounds, and advections of a round.
 const ROUNDS: usize = 9;
-const TIMES: usize = 16;
+const ADVECTIONS: usize = 16;
 /// Cells that paint moves in a step.
 const SPEED: f32 = 0.3;
 
@@ -32,8 +31,8 @@ pub(crate) fn run(report: &mut Report, gpu: Option<Device>) -> Result<(), UserEr
             let fault = |error| UserError::failure(format!("the graphics device: {error}"));
             let mut measured = Measured::new(gpu, SIDE, PAINTS).map_err(fault)?;
             for _ in 0..=ROUNDS {
-                let took = measured.advection(TIMES).map_err(fault)?;
-                pairs.push((took, measured.copy(TIMES).map_err(fault)?));
+                let took = measured.advection(ADVECTIONS).map_err(fault)?;
+                pairs.push((took, measured.copy(ADVECTIONS).map_err(fault)?));
             }
         }
         None => {
@@ -90,7 +89,7 @@ impl OnProcessor {
             size: [SIDE; 2],
         };
         let begun = thread_cpu();
-        for _ in 0..TIMES {
+        for _ in 0..ADVECTIONS {
             self.advection
                 .run(all, &self.faces, &mut self.window, Axis::X, STAIN);
         }
@@ -99,7 +98,7 @@ impl OnProcessor {
 
     fn copy(&mut self) -> Duration {
         let begun = thread_cpu();
-        for _ in 0..TIMES {
+        for _ in 0..ADVECTIONS {
             self.to.copy_from_slice(std::hint::black_box(&self.from));
             std::hint::black_box(&mut self.to);
         }

@@ -1,6 +1,5 @@
-//! A stylus sample from a device's process to that of the brush node: through the stream with
-//! credit, decoded and in order, and through a bare zenoh put into a ring and a thread, in turn on
-//! the same link.
+//! Latency of a stylus sample from a device's process to that of the brush node: through the stream with credit,
+//! decoded and in order, and through a bare zenoh put into a ring and a thread, in turn on the same link.
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::{Command, Stdio};
@@ -23,7 +22,7 @@ use crate::report::{Report, quantile, sorted};
 
 /// Pairs that are measured.
 const PAIRS: u64 = 4000;
-/// Pairs before them.
+/// Number of unmeasured pairs before them.
 const WARM_UP: u64 = 400;
 /// Topic of the bare put.
 const BARE: &str = "bench/bare";
@@ -67,7 +66,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
         .priority(Priority::RealTime)
         .wait()
         .map_err(fault)?;
-    // The far end says when it has heard both.
+    // The far end reports the arrival of both.
     let sample = StylusSample::away();
     let send = |ours: &mut CreditSender<StylusSample>, which: u64| -> Result<(), UserError> {
         if which == 0 {
@@ -134,8 +133,8 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     Ok(())
 }
 
-/// The process that receives: prints `ready` once it has heard both, and at the end of its input
-/// the latencies of ours and of the bare ones, ns.
+/// The receiving process: prints `ready` once it has received both, and at the end of its input the latencies of ours
+/// and of the bare ones, ns.
 pub(crate) fn far_end(argument: &str) -> Result<(), UserError> {
     let (locator, offset) = argument.split_once(' ').ok_or_else(|| fault("no clock"))?;
     let clock = RigClock::with_offset(offset.parse().map_err(fault)?);

@@ -14,10 +14,10 @@ use crate::report::{Report, quantile, sorted};
 
 /// Bytes of a tile's planes.
 const TILE_BYTES: usize = 14 * 4096;
-/// Tiles of a reply, and how often each is asked for: one; what a stroke changes between two frames;
-/// what a reply holds at most; 33 MB, as a picture of 3840×2160 would be.
+/// Numbers of tiles of a reply, and of requests for each: one; the change of a stroke between two frames; the greatest
+/// reply; 33 MB, the size of a picture of 3840×2160.
 const SIZES: [(usize, usize); 4] = [(1, 400), (8, 200), (216, 60), (577, 40)];
-/// Room for the largest.
+/// Memory for the largest reply, bytes.
 const POOL_BYTES: usize = 40 << 20;
 const ME: Origin = Origin {
     source: 1,
@@ -49,7 +49,7 @@ fn reply(tiles: usize) -> FrameReply {
     }
 }
 
-/// Answers until it is told to stop; a question of one byte wants the reply shared.
+/// Answers until it is told to stop; a request of one byte asks for a shared reply.
 fn answer(server: &Server, wake: &Wake, reply: &FrameReply, stop: &AtomicBool) {
     while !stop.load(Ordering::Relaxed) {
         while let Some(request) = server.try_recv() {
@@ -68,7 +68,7 @@ fn answer(server: &Server, wake: &Wake, reply: &FrameReply, stop: &AtomicBool) {
     }
 }
 
-/// Reads every tile, as a view does.
+/// Reads every tile, like a view.
 fn read(bytes: &Payload, into: &mut Vec<u8>) -> Result<usize, UserError> {
     let (_, view) = FrameView::of(bytes).map_err(fault)?;
     for tile in &view.tiles {

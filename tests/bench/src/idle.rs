@@ -1,5 +1,4 @@
-//! What a rig takes of a core while nobody paints: its window with the pointer at rest over the canvas, and the processes
-//! beside it.
+//! Load of an idle rig on a core: its window with the pointer at rest over the canvas, and the other processes.
 
 use std::path::Path;
 use std::process::Command;
@@ -15,8 +14,8 @@ use crate::running::{Running, display, fault, joined, maulstick};
 
 /// Width and height of the window, pixels.
 const SIZE: [u32; 2] = [1280, 800];
-/// Time after the start until all is drawn and settled: nothing signals that a window has no more to draw, and a shorter
-/// time would show in the figures.
+/// Time after the start until all is drawn and settled: nothing signals that a window has finished drawing, and a
+/// shorter time would show in the figures.
 const SETTLES: Duration = Duration::from_secs(8);
 /// Time over which is measured: two of the looks that a window at rest takes.
 const MEASURED: Duration = Duration::from_secs(120);
@@ -54,12 +53,11 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let mut others = 0.0;
     let mut window = None;
     for (at, (name, _)) in processes.iter().enumerate() {
-        match name == WINDOW {
-            true => window = Some(share(at)),
-            false => {
-                report.row(&format!("idle.{name}"), share(at), "cores");
-                others += share(at);
-            }
+        if name == WINDOW {
+            window = Some(share(at))
+        } else {
+            report.row(&format!("idle.{name}"), share(at), "cores");
+            others += share(at);
         }
     }
     let window = window.ok_or_else(|| fault("the rig has no window"))?;
@@ -72,7 +70,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
 fn children(parent: u32) -> Result<Vec<(String, Pid)>, UserError> {
     let entries = std::fs::read_dir(Path::new("/proc")).map_err(fault)?;
     let stats = entries.filter_map(|entry| {
-        // One that ends meanwhile has no more to say.
+        // A process that ends meanwhile is left out.
         std::fs::read_to_string(entry.ok()?.path().join("stat")).ok()
     });
     let own = stats.filter_map(|stat| {
@@ -87,7 +85,7 @@ fn children(parent: u32) -> Result<Vec<(String, Pid)>, UserError> {
     Ok(own.collect())
 }
 
-/// Time of the processor that each has had; nothing of one that has ended.
+/// Processor time of each; zero for one that has ended.
 fn times(processes: &[(String, Pid)]) -> Vec<Duration> {
     let time = |pid: Pid| {
         let clock = ClockId::pid_cpu_clock_id(pid).ok()?;

@@ -1,27 +1,27 @@
-//! Benchmarks of Maulstick beside their peers.
+//! Benchmarks of Maulstick and of its peers.
 //!
 //! | module | area |
 //! | --- | --- |
-//! | [`brush`] | `brush`: the solver of the spines beside slsqp, a head, its strips |
-//! | [`bus`] | `bus`: a sample from a device to the brush node, beside a bare zenoh put |
+//! | [`brush`] | `brush`: the solver of the spines compared with slsqp, a head, its strips |
+//! | [`bus`] | `bus`: a sample from a device to the brush node, compared with a bare zenoh put |
 //! | [`document`] | `document`: vast canvases, long histories, opening and packing a painting's file |
-//! | [`frames`] | `frames`: a reply to a view through shared memory, beside the socket |
-//! | [`haptics`] | `haptics`: how late the servo wakes beside cyclictest, what a tick takes, how stable it is |
+//! | [`frames`] | `frames`: a reply to a view through shared memory, compared with the socket |
+//! | [`haptics`] | `haptics`: the servo's lateness compared with cyclictest, time of a tick, stability |
 //! | [`header`] | headers of a brush's states |
-//! | [`idle`] | `idle`: what a rig takes while nobody paints |
+//! | [`idle`] | `idle`: load of an idle rig |
 //! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it, without a window, in one, and of a broad brush |
 //! | [`looks`] | `looks`: films, relief and streaks of strokes |
 //! | [`measurements`] | tables of measurements (`docs/measurements`) |
-//! | [`optics`] | `optics`: colours of few wavelengths beside all; films on both backends beside a copy |
-//! | [`advection`] | `paint`: the advection by itself, beside a copy |
-//! | [`paint`] | `paint`: steps of the paint model by themselves, beside a copy |
+//! | [`optics`] | `optics`: colours of few wavelengths compared with all; films on both backends compared with a copy |
+//! | [`advection`] | `paint`: the advection alone, compared with a copy |
+//! | [`paint`] | `paint`: steps of the paint model alone, compared with a copy |
 //! | [`pen`] | `pen`: a pen's sample to the brush node, through the window and through the HID daemon |
-//! | [`recording`] | `recording`: a recording of ten minutes, opened and sought in, beside the `mcap` crate's reader |
+//! | [`recording`] | `recording`: a recording of ten minutes, opened and sought in, compared with the `mcap` crate's reader |
 //! | [`render`] | `render`: the 30 s recording, offline |
 //! | [`report`] | rows and their table |
-//! | [`stokes`] | `paint`: the solver of Stokes Paint by itself |
-//! | [`tails`] | `render`: work beside the steps, as shares of it |
-//! | [`texels`] | `paint`: dAb's stroking algorithms by themselves |
+//! | [`stokes`] | `paint`: the solver of Stokes Paint alone |
+//! | [`tails`] | `render`: work besides the steps, as shares |
+//! | [`texels`] | `paint`: dAb's stroking algorithms alone |
 //! | [`thread_cpu`] | time of the processor |
 //! | [`view`] | `view`: frames of the whole desk without a window |
 //! | [`window`] | `window`: memory of the window |

@@ -1,4 +1,4 @@
-//! Steps of the paint model by themselves: states of a brush that were solved before, on wet paint.
+//! Steps of the paint model alone: presolved states of a brush on wet paint.
 
 use maulstick_types::Edit;
 use std::sync::Arc;
@@ -29,7 +29,7 @@ const BRUSH: &str = "main";
 const FILM: &str = "Ultramarine Blue=0.25,Titanium White=0.25,Yellow Ochre=0.25,Pyrrole Red=0.25";
 /// Thickness of the film on the canvas, m.
 const FILM_M: f64 = 60e-6;
-/// Way of a step, cells.
+/// Path of a step, cells.
 const STEP_CELLS: f64 = 0.7;
 /// Share of the square that the footprint covers.
 const COVERED: f64 = 0.62;
@@ -37,10 +37,10 @@ const COVERED: f64 = 0.62;
 const STATES: usize = 200;
 const ROUNDS: usize = 7;
 
-/// A footprint of so many cells either way, of a brush of so many strips.
+/// Sides of a footprint, cells, and numbers of the brush's strips.
 const SIZES: [(usize, usize); 2] = [(26, 64), (88, 256)];
-/// As [`SIZES`], of one that cores are worth sharing.
-const WIDE: (usize, usize) = (352, 1024);
+/// Side and number of strips of a footprint that justifies several cores.
+const WIDE_FOOTPRINT: (usize, usize) = (352, 1024);
 /// Threads that are compared with one.
 const THREADS: [usize; 3] = [2, 4, 8];
 
@@ -48,7 +48,7 @@ fn fault(error: impl ToString) -> UserError {
     UserError::failure(error.to_string())
 }
 
-/// What moves the paint.
+/// Model and backend of the paint.
 #[derive(Clone)]
 struct Means {
     model: String,
@@ -70,7 +70,7 @@ struct Round {
     sequencer: Sequencer,
     states: Vec<BrushState>,
     seq: u64,
-    /// Of the graphics processor, if one paints.
+    /// Traffic of the graphics processor, if one paints.
     traffic: Option<Arc<Traffic>>,
 }
 
@@ -162,7 +162,7 @@ impl Round {
                 .1
                 .map_err(fault)?;
         }
-        // What a device does is done when it is read.
+        // A device's work is complete once it is read.
         if self.traffic.is_some() {
             self.sequencer.painting_mut().commit();
         }
@@ -173,7 +173,7 @@ impl Round {
     }
 }
 
-/// A brush whose footprint covers the share of the square that is wanted.
+/// A brush whose footprint covers the requested share of the square.
 fn fitted(side: usize, strips: usize, means: &Means) -> Result<Round, UserError> {
     Round::new(fitted_mm(side, strips, means)?, strips, side, means)
 }
@@ -208,7 +208,7 @@ pub(crate) fn run(report: &mut Report, backend: &str, model: &str) -> Result<(),
         gpu,
     };
     let cores = available_parallelism().map_or(1, usize::from);
-    // Its steps cost what the solver's do; the wide footprints of the others would take it an hour.
+    // Its steps cost as much as the solver's; the wide footprints of the others would take an hour.
     if model == "stokes" {
         if means.gpu.is_some() {
             return with_threads(cores.min(2), || beside_processor(report, &means));
@@ -268,9 +268,9 @@ fn cells(report: &mut Report, means: &Means) -> Result<(), UserError> {
     Ok(())
 }
 
-/// How many times as fast several cores paint with a wide brush as one, as far as there are so many.
+/// Speed-up by several cores with a wide brush, as far as there are that many.
 fn speed_up(report: &mut Report, cores: usize, means: &Means) -> Result<(), UserError> {
-    let (side, strips) = WIDE;
+    let (side, strips) = WIDE_FOOTPRINT;
     let mut round = fitted(side, strips, means)?;
     round.paint()?;
     for threads in THREADS {
@@ -291,7 +291,6 @@ fn speed_up(report: &mut Report, cores: usize, means: &Means) -> Result<(), User
     Ok(())
 }
 
-/// Both sizes.
 fn rounds(report: &mut Report, means: &Means) -> Result<(), UserError> {
     for (side, strips) in SIZES {
         let mut round = fitted(side, strips, means)?;
@@ -318,7 +317,7 @@ fn rounds(report: &mut Report, means: &Means) -> Result<(), UserError> {
     Ok(())
 }
 
-/// Time to copy the cells of so many steps: height and four paints, read and written.
+/// Time to copy the cells of `steps` steps: height and four paints, read and written.
 fn copy(side: usize, steps: u64) -> Duration {
     let from = vec![1.0f32; side * side * 5];
     let mut to = vec![0.0f32; from.len()];

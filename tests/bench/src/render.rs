@@ -28,8 +28,7 @@ const LOADS: [&str; 4] = [
     "Phthalo Green Blue Shade=0.3,Titanium White=0.7",
 ];
 
-/// The recording of a person's strokes if it lies beside the project, else the demo; and its length
-/// in seconds.
+/// The recording of a person's strokes if it is beside the project, else the demo; and its length in seconds.
 pub(crate) fn performance(place: &Path) -> Result<(PathBuf, f64), UserError> {
     let table =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/painting30sec.dat");
@@ -67,9 +66,10 @@ pub(crate) fn run(report: &mut Report, model: &str) -> Result<(), UserError> {
         }
     }
     let name = "recording.025.time";
-    match pairs.is_empty() {
-        true => report.median(name, "s", seconds),
-        false => report.paired(name, "s", "libmypaint, modelling", &pairs),
+    if pairs.is_empty() {
+        report.median(name, "s", seconds)
+    } else {
+        report.paired(name, "s", "libmypaint, modelling", &pairs)
     }
     let ledger = std::fs::read(place.join("l.json")).map_err(fault)?;
     let ledger: serde_json::Value =
@@ -103,8 +103,9 @@ fn painted(place: &Path, take: &Path, (cell_mm, model): (f64, &str)) -> Result<f
     command.args(["--size", &format!("{side}x{side}"), "--model", model]);
     command.args(LOADS.iter().flat_map(|load| ["--load", load]));
     let status = command.current_dir(place).status().map_err(fault)?;
-    match status.success() {
-        true => Ok(start.elapsed().as_secs_f64()),
-        false => Err(UserError::failure("the recording cannot be rendered")),
+    if status.success() {
+        Ok(start.elapsed().as_secs_f64())
+    } else {
+        Err(UserError::failure("the recording cannot be rendered"))
     }
 }

@@ -26,7 +26,7 @@ pub(crate) struct Row {
     run: Run,
 }
 
-/// How a row is measured.
+/// Conditions of a row.
 #[derive(Clone, Debug)]
 struct Run {
     command: String,
@@ -34,20 +34,20 @@ struct Run {
 }
 
 impl Run {
-    /// On the processor.
+    /// A run on the processor.
     fn of(command: String) -> Self {
         let adapter = "cpu".to_owned();
         Self { command, adapter }
     }
 }
 
-/// What was measured, and on what.
+/// Measured rows, and the machine.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Report {
     machine: String,
     adapter: String,
     rows: Vec<Row>,
-    /// Of the rows that follow.
+    /// Conditions of the following rows.
     #[serde(skip)]
     run: Run,
 }
@@ -75,7 +75,7 @@ impl Report {
         self.run = Run::of(command);
     }
 
-    /// What else it was measured on.
+    /// Adds an adapter to the conditions.
     pub(crate) fn on(&mut self, adapter: &str) {
         adapter.clone_into(&mut self.adapter);
         adapter.clone_into(&mut self.run.adapter);
@@ -129,7 +129,7 @@ impl Report {
         self.push(name, (value, unit), Some((peer, theirs, value / theirs)));
     }
 
-    /// Numbers of ours and of a peer, measured in turn: the median of each, and of their ratio.
+    /// Our numbers and a peer's, measured in turn: the median of each, and of their ratio.
     pub(crate) fn paired(
         &mut self,
         name: &str,

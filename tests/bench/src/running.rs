@@ -28,7 +28,7 @@ impl Running {
         self.0.id()
     }
 
-    /// Whether it has ended by itself.
+    /// True if it has ended.
     pub(crate) fn has_ended(&mut self) -> Result<bool, UserError> {
         Ok(self.0.try_wait().map_err(fault)?.is_some())
     }
@@ -52,10 +52,10 @@ pub(crate) fn maulstick() -> Result<PathBuf, UserError> {
         .with_file_name("maulstick"))
 }
 
-/// A rig that starts is looked for this often: nothing tells that its folder is there.
+/// Interval of checks for a starting rig, whose folder nothing announces.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// The rig of a folder, once it is there.
+/// The rig of a folder, once it runs.
 pub(crate) fn joined(path: &Path, give_up: Instant) -> Result<(RigFolder, RigInfo), UserError> {
     loop {
         match RigFolder::join_at(path) {
@@ -66,7 +66,7 @@ pub(crate) fn joined(path: &Path, give_up: Instant) -> Result<(RigFolder, RigInf
     }
 }
 
-/// The display that is there, or one without a screen, of `size` pixels; and its name.
+/// The existing display, or one without a screen, of `size` pixels; and its name.
 pub(crate) fn display(size: [u32; 2]) -> Result<(Option<Running>, String), UserError> {
     if let Ok(name) = std::env::var("DISPLAY") {
         return Ok((None, name));

@@ -1,4 +1,4 @@
-//! The solver of Stokes Paint by itself: steps of windows, and multigrid on the pressure's equation.
+//! The solver of Stokes Paint alone: steps of windows, and multigrid on the pressure's equation.
 
 #[path = "../../../sim/models/stokes/solver/tests/common/pools.rs"]
 #[allow(unreachable_pub, reason = "a pool is what tests share")]
@@ -17,7 +17,7 @@ use pools::{Pool, pool};
 
 use crate::report::Report;
 
-/// A window: cells, layers that are full, and rods of a radius that are drawn through it.
+/// A window: cells, full layers, and number and radius of the rods drawn through it.
 type Window = ([usize; 3], usize, (usize, f32));
 
 /// A deep pool, as the dissertation's machine had it, and thin paint on a wide window.
@@ -31,7 +31,7 @@ const CAPACITY: u32 = 167_772;
 /// Steps of a round, and rounds, of which the first warms up.
 const STEPS: u32 = 40;
 const ROUNDS: usize = 6;
-/// Way of a step, cells.
+/// Path of a step, cells.
 const WAY: f32 = 0.48;
 const CONDITIONS: Conditions = Conditions {
     cell_m: 2.5e-4,
@@ -75,13 +75,13 @@ pub(crate) fn run(report: &mut Report) {
     plan(report, [128, 128, 64], Effort::default());
 }
 
-/// Numbers of a step on a large window that the graphics processor would read and write, and of its dispatches, counted
+/// Numbers that the graphics processor would read and write in a step on a large window, and its dispatches, counted
 /// from the loops of the solver: each field of a loop once.
 fn plan(report: &mut Report, cells: [usize; 3], effort: Effort) {
     let places = cells.iter().product::<usize>() as f64;
     let halvings = cells.iter().max().map_or(0, |most| most.ilog2() - 2);
     let (steps, projections) = (effort.steps as f64, effort.projections as f64);
-    // A cycle on a level: two steps at once, the residual, and two steps; then what goes down and comes up.
+    // A cycle on a level: two steps at once, the residual, and two steps; then the transfers down and up.
     let (sweeps, transfers) = ([6.0, 8.0, 7.0, 7.0], [1.2, 3.3]);
     let levels: f64 = (0..halvings).map(|level| 0.125f64.powi(level as i32)).sum();
     let cycle = levels * (sweeps.iter().sum::<f64>() + transfers.iter().sum::<f64>());

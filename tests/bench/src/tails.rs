@@ -1,4 +1,4 @@
-//! Work beside the steps of the 30 s recording: packing its PNG, its light, the heights of its tooth; each as a share
+//! Work besides the steps of the 30 s recording: packing its PNG, its light, the heights of its tooth; each as a share
 //! of the processor's time for all of it, so a busy machine shows the same. Medians of five.
 
 use std::time::Duration;
@@ -23,7 +23,7 @@ use crate::thread_cpu::{process_cpu, thread_cpu};
 const BRUSH_MM: f64 = 10.0;
 const DEPTH_SHARE: f64 = 0.5;
 /// Largest share of each.
-const MOST: f64 = 0.05;
+const SHARE_MAX: f64 = 0.05;
 /// Runs of which the median is reported.
 const RUNS: usize = 5;
 
@@ -69,12 +69,12 @@ pub(crate) fn run(
         ("recording.png_share", packing(cells as usize, pixels)?),
         ("recording.tooth_share", tooth(&setup)?),
     ] {
-        report.beside(name, took / whole, "", ("target", MOST));
+        report.beside(name, took / whole, "", ("target", SHARE_MAX));
     }
     Ok(())
 }
 
-/// The median of the times of several runs, s, and what the last returned.
+/// Median duration of several runs, s, and the result of the last.
 fn median<T>(
     mut work: impl FnMut() -> Result<(T, Duration), UserError>,
 ) -> Result<(f64, T), UserError> {

@@ -1,5 +1,5 @@
-//! dAb's stroking algorithms by themselves (Baxter 2004, table 4.2): texels of footprints blended a second, and cells of
-//! them that were touched, along paths of which the text says nothing: here two fast straight ones and a slow curved one.
+//! dAb's stroking algorithms alone (Baxter 2004, table 4.2): texels of blended footprints a second, and their touched
+//! cells, along paths that the text leaves open: here two fast straight ones and a slow curved one.
 
 use std::time::Instant;
 
@@ -27,7 +27,7 @@ const STROKERS: [(&str, Stroker); 3] = [
     ("spline", Stroker::Spline),
 ];
 
-/// Measures and reports, on one core and on two; on a device with upload and read-back of each stroke.
+/// Measures and reports, on one core and on two; on a device including upload and read-back of each stroke.
 pub(crate) fn run(report: &mut Report, gpu: Option<&Device>) -> Result<(), UserError> {
     let fault = |error: BrushError| UserError::failure(error.to_string());
     let mut file = BrushFile::library("round").map_err(fault)?;

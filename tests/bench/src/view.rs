@@ -62,7 +62,7 @@ fn tile(x: u32, y: u32, turn: u32) -> Option<ShownTile> {
     })
 }
 
-/// A surface as the window keeps it, at the level that the view asks for.
+/// A surface in the window's form, at the level of the view.
 struct Sheet {
     surface: Surface,
     view: SurfaceView,

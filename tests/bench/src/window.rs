@@ -25,7 +25,7 @@ const SIDES_MM: [u32; 2] = [16, 1024];
 const SCREEN: [u32; 2] = [1280, 1024];
 /// Zooms that are shown one after the other: the whole canvas, then ever finer levels of it.
 const ZOOMS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
-/// Memory that changes by less than this for so long is settled.
+/// Change of memory below which it counts as settled, bytes, and its duration.
 const STEADY_BYTES: u64 = 1 << 20;
 const STEADY: Duration = Duration::from_secs(3);
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -56,7 +56,7 @@ fn resident(pid: u32) -> Result<u64, UserError> {
 /// Memory is looked at so often.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Resident memory once it has settled: the system tells of no change, so it is looked at.
+/// Resident memory once it has settled, which nothing announces.
 fn settled(pid: u32) -> Result<u64, UserError> {
     let give_up = Instant::now() + PATIENCE;
     let (mut last, mut since) = (resident(pid)?, Instant::now());
@@ -73,7 +73,7 @@ fn settled(pid: u32) -> Result<u64, UserError> {
     resident(pid)
 }
 
-/// What a window takes at each zoom.
+/// Memory of a window at each zoom.
 fn measured(side_mm: u32, zooms: &[f64], display: &str) -> Result<Vec<u64>, UserError> {
     let place = tempfile::tempdir().map_err(fault)?;
     let rig = place.path().join("rig.toml");

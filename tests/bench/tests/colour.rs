@@ -85,7 +85,7 @@ fn mixtures_have_the_colours_of_the_peer() {
         "XYZ differ by at most {:.4}, Lab by {:.4}",
         worst[0], worst[1]
     );
-    // So much lies between sums at 4 nm and at 1 nm.
+    // The difference between sums at 4 nm and at 1 nm.
     assert!(worst[0] < 0.1 && worst[1] < 0.1, "{worst:?}");
     let blend = Blend::of(&library, &MIXTURES[2].parse().expect("a mixture")).expect("known");
     let coat = Coat::masstone();

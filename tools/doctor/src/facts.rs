@@ -1,4 +1,4 @@
-//! What this machine is, as far as a rig depends on it.
+//! Facts about this machine that matter to a rig.
 
 use std::collections::BTreeSet;
 use std::fs::read_to_string;
@@ -18,9 +18,9 @@ use maulstick_device_setup::attached::{
     Attached, Permission, Places, events, hid, permission, serial,
 };
 
-/// Where the kernel tells of its clocks.
+/// Folder of the kernel's clocks.
 pub(super) const CLOCK: &str = "/sys/devices/system/clocksource/clocksource0";
-/// Where it tells of its processors.
+/// Folder of the kernel's processors.
 const PROCESSORS: &str = "/sys/devices/system/cpu";
 
 /// The machine.
@@ -34,9 +34,9 @@ pub(super) struct Facts {
     pub lockable: Option<u64>,
     /// Devices that a driver fits.
     pub devices: Vec<Attached>,
-    /// The kernel's clock; `None` where it tells of none.
+    /// The kernel's clock; `None` if unknown.
     pub clock: Option<Clock>,
-    /// Drivers and governors of the processors' speed; empty where the kernel tells of none, as in virtual machines.
+    /// Drivers and governors of the processors' speed; empty if unknown, as in virtual machines.
     pub governors: BTreeSet<Governor>,
     /// Folders that are written to, one a file system.
     pub disks: Vec<Disk>,
@@ -73,7 +73,7 @@ pub(super) struct RealTime {
 pub(super) struct Clock {
     /// The one in use.
     pub current: String,
-    /// Those that there are, between spaces.
+    /// Names of the available ones, separated by spaces.
     pub available: String,
 }
 
@@ -86,12 +86,12 @@ pub(super) struct Governor {
     pub name: String,
 }
 
-/// Room on a file system.
+/// Free space of a file system.
 #[derive(Debug)]
 pub(super) struct Disk {
     /// A folder on it.
     pub folder: PathBuf,
-    /// Room for this user, bytes.
+    /// Free space for this user, bytes.
     pub free: u64,
 }
 
@@ -100,12 +100,12 @@ pub(super) struct Disk {
 pub(super) struct Display {
     /// Window system that the environment names; `None` without one.
     pub server: Option<&'static str>,
-    /// True if it tells of pens; an error if it is away.
+    /// True if it reports pens; an error if it is not reachable.
     pub tells_of_pens: Result<bool, UserError>,
 }
 
 impl Facts {
-    /// Those of this machine.
+    /// Facts of this machine.
     pub(super) fn of_this_machine() -> Self {
         let devices = Places::here();
         let hid = hid::devices(&devices);
@@ -184,7 +184,7 @@ pub(super) fn governors(folder: &Path) -> BTreeSet<Governor> {
     processors.filter_map(governor).collect()
 }
 
-/// The folder that commands write to, and that in which the window saves.
+/// The folders of commands and of the window for saving.
 fn disks() -> Vec<Disk> {
     let own = directories::UserDirs::new();
     let own = own.map(|own| {
@@ -205,7 +205,7 @@ fn disks() -> Vec<Disk> {
     disks
 }
 
-/// Room for this user on the file system of a folder, bytes.
+/// Free space for this user on the file system of a folder, bytes.
 fn free(folder: &Path) -> Option<u64> {
     let system = statvfs(folder).ok()?;
     Some(system.blocks_available() * system.fragment_size())

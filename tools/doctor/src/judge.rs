@@ -1,4 +1,4 @@
-//! What is right and wrong with a machine.
+//! Verdicts about a machine.
 
 use maulstick_haptic::servo::servo_thread::PRIORITY;
 use serde::Serialize;
@@ -7,15 +7,15 @@ use super::facts::{CLOCK, Clock, Disk, Display, Facts, Graphics, RealTime};
 use maulstick_device_setup::attached::{Attached, Permission};
 
 const MB: u64 = 1 << 20;
-/// Memory that has to be locked for pictures to reach the window without the socket, bytes; and that has to be free.
+/// Lockable memory needed for pictures to reach the window without the socket, bytes; and free memory needed.
 const SHARED: u64 = 8 * MB;
-/// Room on a disk below which painting ends soon, and below which saving fails, bytes.
+/// Free disk space below which painting ends soon, and below which saving fails, bytes.
 const LITTLE: u64 = 2048 * MB;
 const NONE: u64 = 100 * MB;
-/// Where limits of users stand.
+/// File of users' limits.
 const LIMITS: &str = "/etc/security/limits.d/maulstick.conf";
 
-/// Whether something is right.
+/// Verdict of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum State {
@@ -27,16 +27,16 @@ pub enum State {
     Wrong,
 }
 
-/// What was found by a check.
+/// Result of a check.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Finding {
     /// Subject of the check.
     pub check: &'static str,
     /// Its outcome.
     pub state: State,
-    /// What was found, and what it means.
+    /// The observation and its meaning.
     pub what: String,
-    /// Command that mends it, or what to do.
+    /// Remedy: a command, or instructions.
     pub mend: Option<String>,
 }
 
@@ -132,10 +132,10 @@ fn display(display: &Display) -> Finding {
             "neither WAYLAND_DISPLAY nor DISPLAY is set: the window cannot open",
             "start it from a terminal of a graphical session, or without a window: maulstick up --headless",
         ),
-        (Some(server), Ok(true)) => Finding::ok(CHECK, format!("{server} tells of pens")),
+        (Some(server), Ok(true)) => Finding::ok(CHECK, format!("{server} reports pens")),
         (Some(server), Ok(false)) => Finding::warning(
             CHECK,
-            format!("{server} tells nothing of pens: a pen paints as a mouse"),
+            format!("{server} does not report pens: a pen paints like a mouse"),
             "give its tablet to the rig: maulstick device add",
         ),
         (Some(_), Err(error)) => Finding::warning(
@@ -275,18 +275,17 @@ fn clock(clock: &Clock) -> Finding {
         "time is read from {current}, which is slow: all streams and the servo wait for it"
     );
     let has_tsc = available.split_whitespace().any(|name| name == "tsc");
-    let mend = match has_tsc {
-        true => format!("echo tsc | sudo tee {CLOCK}/current_clocksource"),
-        false => {
-            "see why the kernel gave up the processor's own clock: sudo dmesg | grep -i tsc".into()
-        }
+    let mend = if has_tsc {
+        format!("echo tsc | sudo tee {CLOCK}/current_clocksource")
+    } else {
+        "see why the kernel gave up the processor's own clock: sudo dmesg | grep -i tsc".into()
     };
     Finding::warning(CHECK, what, mend)
 }
 
 fn processor(facts: &Facts) -> Option<Finding> {
     const CHECK: &str = "processor";
-    // These two take powersave for a bound, within which the processor itself chooses.
+    // These two drivers take powersave as a bound, within which the processor itself chooses.
     let is_slow = |driver: &str, name: &str| {
         name == "powersave" && !["intel_pstate", "amd-pstate-epp"].contains(&driver)
     };

@@ -1,4 +1,4 @@
-//! Seeded faults: a machine that is right, and one thing at a time that is not.
+//! Seeded faults: a machine in order, with one fault at a time.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -74,7 +74,7 @@ fn right() -> Facts {
     }
 }
 
-/// The one finding that is not right where a fault is seeded, and words that it has.
+/// The one finding of a seeded fault, with these words.
 fn check(seed: impl FnOnce(&mut Facts), name: &str, state: State, words: &[&str]) {
     let mut facts = right();
     seed(&mut facts);
@@ -263,7 +263,7 @@ fn clocks_and_processors() {
         warning,
         &["lowest speed", "echo performance"],
     );
-    // A machine that tells of neither is none the worse.
+    // A machine that reports neither is in order.
     let mut facts = right();
     facts.clock = None;
     facts.governors.clear();

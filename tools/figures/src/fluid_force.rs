@@ -164,7 +164,7 @@ fn panels(sweeps: &[Sweep]) -> Vec<Panel> {
     panels
 }
 
-/// The ends of an axis about 0 that holds all `values`, with a little room.
+/// The ends of an axis about 0 that contains all `values`, with a margin.
 fn around_zero(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let most = values.fold(0.0, |most: f64, value| most.max(value.abs()));
     let end = if most > 0.0 { 1.05 * most } else { 1.0 };

@@ -1,4 +1,4 @@
-//! Figures: what brush, paint, colour and fluid do, as pictures and tables.
+//! Figures of brush, paint, colour and fluid, as pictures and tables.
 //!
 //! | module | holds |
 //! | --- | --- |

@@ -1,4 +1,4 @@
-//! Figures on the command line: what they show, refuse, and never write over.
+//! Figures on the command line: contents, refusals, and protection of existing files.
 
 #[path = "../../../tests/support/place.rs"]
 mod place;
@@ -127,7 +127,7 @@ fn a_figure_is_written_over_no_file_of_another_kind_and_over_none_that_it_reads(
     has(&fault(&place, &chart, 1), &["list.txt", "--overwrite"]);
     assert_eq!(place.bytes("list.txt"), b"a shopping list");
     place.done(&[&chart[..], &["--overwrite"]].concat());
-    // What is there now is of its own kind.
+    // The existing file is of its own kind.
     place.done(&chart);
     std::fs::write(place.path("own.csv"), own_paints()).expect("written");
     std::fs::write(place.path("lamp.csv"), "nm,power\n380,1\n780,1\n").expect("written");

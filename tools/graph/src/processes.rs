@@ -10,7 +10,7 @@ use maulstick_types::wire::topics::Topics;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-/// Place of a process on the way from the hand to the eye.
+/// Stage of a process between the hand and the eye.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stage {
@@ -18,14 +18,13 @@ pub enum Stage {
     Device,
     /// It solves a brush.
     Brush,
-    /// It paints.
     Paint,
     /// It shows, records or supervises.
     Viewer,
 }
 
 impl Stage {
-    /// The stage of a process by what it sends. The window, which also sends what its mouse does, is a viewer.
+    /// The stage of a process by its topics. The window, which also sends its mouse, is a viewer.
     fn of(sent: &[Sent]) -> Self {
         let sends = |pattern: &str| sent.iter().any(|sent| matches(pattern, &sent.topic));
         if sends("ui/**") {
@@ -42,7 +41,7 @@ impl Stage {
     }
 }
 
-/// Statuses by which the launcher sees that nodes go on: each sends one, and they say nothing of the way of a stroke.
+/// Statuses of nodes for the launcher: each node sends one, and they are no part of a stroke's path.
 const STATUS: &str = "node/*/status";
 
 /// A topic that a process sends.
@@ -72,24 +71,24 @@ pub struct Process {
     pub name: String,
     /// Its stage.
     pub stage: Stage,
-    /// What it sends, by topic.
+    /// Topics that it sends.
     pub sends: Vec<Sent>,
-    /// Patterns of what it receives.
+    /// Patterns of topics that it receives.
     pub receives: Vec<String>,
-    /// Queries that it answers, but for those of lost messages.
+    /// Queries that it answers, except those for lost messages.
     pub answers: Vec<String>,
 }
 
-/// What one process sends and another receives.
+/// A stream from one process to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Arrow {
     /// Place of the sender.
     pub from: usize,
-    /// Place of the topic among what it sends.
+    /// Index of the topic among the sender's.
     pub sent: usize,
     /// Place of the receiver.
     pub to: usize,
-    /// Place of the pattern among what that one receives.
+    /// Index of the pattern among the receiver's.
     pub received: usize,
 }
 
@@ -199,7 +198,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// A rig with a window, a pen and a program that shows nothing of itself but what it sends.
+    /// A rig with a window, a pen and a program of which only its topics are known.
     pub(crate) fn studio() -> Graph {
         let participants = [
             participant(

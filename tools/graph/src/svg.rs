@@ -1,5 +1,6 @@
-//! The graph as a drawing: a column for each stage, in each box what it receives on its left side and what it sends on its
-//! right one, as in a node editor. A wire to the next column is a curve; any other runs below the boxes, in a lane of its own.
+//! The graph as a drawing: a column for each stage, in each box the inputs on its left side and the outputs on its
+//! right one, as in a node editor. A wire to the next column is a curve; any other runs below the boxes, in a lane of
+//! its own.
 
 use std::fmt::Write as _;
 
@@ -8,10 +9,10 @@ use crate::processes::{Arrow, Graph, Process, Stage};
 /// Width of a letter of the monospaced font, and height of a row, px.
 const LETTER: f64 = 6.7;
 const ROW: f64 = 16.0;
-/// Height of a box's title, and room at its edges, px.
+/// Height of a box's title, and padding at its edges, px.
 const TITLE: f64 = 24.0;
 const PAD: f64 = 8.0;
-/// Room between boxes, and around all of them, px.
+/// Margin between boxes, and around all of them, px.
 const SPACE: f64 = 24.0;
 /// From a box to the first lane that passes it, and from one lane to the next, px.
 const REACH: f64 = 14.0;
@@ -20,7 +21,7 @@ const INK: &str = "#282421";
 const PALE: &str = "#7a706a";
 const STAGES: [Stage; 4] = [Stage::Device, Stage::Brush, Stage::Paint, Stage::Viewer];
 
-/// Colour of a stage and of what it sends: Okabe and Ito's, which colour-blind readers tell apart.
+/// Colour of a stage and its outputs, from Okabe and Ito's palette for colour-blind readers.
 fn colour(stage: Stage) -> &'static str {
     match stage {
         Stage::Device => "#0072b2",
@@ -234,7 +235,7 @@ mod tests {
             let (wire, [x, y]) = layout.wire(&graph, arrow);
             let to = &layout.boxes[arrow.to];
             assert!(x == to.x && (to.y..to.y + to.height).contains(&y), "{wire}");
-            // What goes anywhere but to the next column passes below the boxes.
+            // Wires to other columns than the next pass below the boxes.
             assert_eq!(wire.contains('V'), !is_forward(&graph, arrow), "{wire}");
         }
     }

@@ -1,8 +1,8 @@
 //! The fluid force in the hand: a stroke to and fro through paint over a wall, and a hand that then holds still.
 //!
-//! The paint is a film that the brush carries along: a damper c to a mass c·τ, whose velocity u goes after the brush's,
-//! f = −c·(v − u), so it keeps ½·c·τ·u² and gives no more back. A solver sends f at its own rate, late and with losses.
-//! Judged is what the hand was given beyond the wall and what the film had kept.
+//! The paint is a film that the brush carries along: a damper c to a mass c·τ, whose velocity u follows the brush's, f
+//! = −c·(v − u), so it stores ½·c·τ·u² and returns no more. A solver sends f at its own rate, late and with losses. The
+//! criterion is the energy given to the hand beyond the wall's and the film's.
 
 use glam::DVec3;
 use maulstick_num::sin;
@@ -45,7 +45,7 @@ pub struct Film {
     pub drag: f64,
     /// Time constant with which the brush carries it along, s; 0 of one that stands.
     pub carried_s: f64,
-    /// Messages a second.
+    /// Rate of messages, Hz.
     pub rate_hz: f64,
     /// Messages are late by up to this share of their period, and as often are lost.
     pub jitter: f64,
@@ -67,9 +67,9 @@ pub struct FluidRun {
 /// Role of the servo's passivity observer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Observer {
-    /// It does.
+    /// The observer acts.
     There,
-    /// It takes the device to damp whatever is given.
+    /// It assumes a device that damps all gains.
     Blind,
 }
 
@@ -78,7 +78,7 @@ pub enum Observer {
 pub struct FluidOutcome {
     /// Movement of the tip while the hand holds still, peak to peak, m.
     pub wobble_m: f64,
-    /// Greatest energy given to the hand from some time on that nobody had put in, J.
+    /// Greatest rise after some time of the energy given to the hand without a source, J.
     pub net_j: f64,
     /// Energy that the film took from the hand, J.
     pub taken_j: f64,
@@ -121,9 +121,10 @@ impl Film {
 
     /// Its velocity a tick later, m/s, under a brush that touches it by a share.
     pub(super) fn follow(&self, carried: DVec3, velocity: DVec3, touch: f64) -> DVec3 {
-        match self.carried_s > 0.0 {
-            true => carried + (velocity - carried) * (touch * DT / self.carried_s),
-            false => carried,
+        if self.carried_s > 0.0 {
+            carried + (velocity - carried) * (touch * DT / self.carried_s)
+        } else {
+            carried
         }
     }
 
@@ -134,10 +135,9 @@ impl Film {
 }
 
 impl FluidRun {
-    /// Lets the hand go through it all.
+    /// Runs the hand.
     ///
-    /// # Errors
-    /// The defect of a wall or a force that is refused.
+    /// # Errors The defect of a wall or a force that is refused.
     pub fn go(&self) -> Result<FluidOutcome, &'static str> {
         let mut servo = Servo::new(Limits {
             max_force_n: 3.3,
@@ -257,8 +257,8 @@ mod tests {
         }
     }
 
-    /// The seeded faults: drag that pushes the hand, and a force that is held without its Jacobian. Of what the first
-    /// gives, the observer takes back all but a fraction.
+    /// The seeded faults: drag that pushes the hand, and a force held without its Jacobian. The observer removes all
+    /// but a fraction of the first one's gain.
     #[test]
     fn drag_that_pushes_is_found_out_and_the_observer_takes_its_power_back() {
         let refused = Film {

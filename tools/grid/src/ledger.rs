@@ -1,9 +1,9 @@
-//! Energy ledger of a hand: what it was given beyond the work of the newest model's own force along its true way, felt without
-//! samples, which round a closed way is nothing.
+//! Energy ledger of a hand: its gain beyond the work of the newest model's own force along the true path without
+//! sampling, which vanishes along a closed path.
 //!
-//! A model that takes over is spread over the recovery time, as a plane that moves is. A servo that makes its force softer says
-//! so; a wall that hardens under a hand again stores energy that nobody put in. What a film of paint and the device's mass keep
-//! was taken from the hand and may come back.
+//! A model that takes over is spread over the recovery time, as a plane that moves is. A servo reports its softening; a
+//! wall that hardens again under a hand stores energy without a source. Energy stored in a film of paint and the
+//! device's mass came from the hand and may return.
 
 use glam::DVec3;
 
@@ -11,7 +11,7 @@ use super::{DT, GuideLine, HEAD_M, MAX_STIFFNESS_N_M, RECOVERY_S};
 use maulstick_haptics::contact::{Contact, HandleState};
 use maulstick_haptics::plant::Plant;
 
-/// A way out along the normal that ends beyond all contact, m.
+/// Length of a path out along the normal that ends beyond all contact, m.
 const OUT_M: f64 = 1.2e-2;
 
 /// The ferrule over the tip of an upright brush, m.
@@ -30,7 +30,7 @@ pub(super) struct Ledger {
     guide: Option<GuideLine>,
     net_j: f64,
     least_j: f64,
-    /// Greatest energy given that nobody had put in, J.
+    /// Greatest energy given without a source, J.
     pub(super) most_j: f64,
     /// Greatest energy given from some time on to the hand, the device's mass and the film, J.
     pub(super) rise_j: f64,
@@ -89,14 +89,15 @@ impl Ledger {
         self.speed = self.speed.max(self.correction.length() / RECOVERY_S);
     }
 
-    /// Work of the model on a short straight way, J, by Simpson's rule.
+    /// Work of the model on a short straight path, J, by Simpson's rule.
     fn work(&self, from: DVec3, to: DVec3) -> f64 {
         let middle = self.force((from + to) * 0.5);
         let mean = (self.force(from) + middle * 4.0 + self.force(to)) / 6.0;
         (mean + self.correction).dot(to - from) * self.softness
     }
 
-    /// Energy stored in the model at a place without softening, J: its work on a way out along the normal, by Simpson's rule.
+    /// Energy stored in the model at a place without softening, J: its work on a path out along the normal, by
+    /// Simpson's rule.
     fn stored(&self, position: DVec3) -> f64 {
         const STEPS: u32 = 64;
         let step = self.contact.normal() * (OUT_M / f64::from(STEPS));
@@ -108,7 +109,7 @@ impl Ledger {
         (0..STEPS).map(piece).sum()
     }
 
-    /// The servo says which stiffness it gives, N/m, to a handle as it is read, with the ferrule truly at `position`.
+    /// Reports the servo's stiffness, N/m, for a handle as read, with the ferrule truly at `position`.
     pub(super) fn soften(&mut self, handle: &HandleState, given_n_m: f64, position: DVec3) {
         let felt = self.contact.evaluate(handle, MAX_STIFFNESS_N_M);
         let touches = felt.depth_m > 0.0 && felt.stiffness_n_m > 0.0;
@@ -122,7 +123,7 @@ impl Ledger {
         }
     }
 
-    /// A tick ends that took the hand from `before` to `after`; `kept_j` is what a film keeps then, J.
+    /// Ends a tick that moved the hand from `before` to `after`; `kept_j` is the energy of a film then, J.
     pub(super) fn book(&mut self, before: &Plant, after: &Plant, kept_j: f64) {
         let (from, to) = (before.true_position(), after.true_position());
         let guided_j = self.guide.map_or(0.0, |guide| {

@@ -1,12 +1,11 @@
-//! The stability grid: the whole servo against hands, walls, rates of models, losses and moving
-//! planes, on a clock of its own.
+//! The stability grid: the whole servo against hands, walls, rates of models, losses and moving planes, on a virtual
+//! clock.
 //!
-//! A hand comes down, presses, is kicked, holds still, and lifts. Judged are how far the tip moves
-//! while the hand holds still, the steady force, and the energy that the hand was given beyond what
-//! the models, felt without samples, would have given: at the grip, with the device's own friction
-//! and mass, and without what a plane does that moves or changes its stiffness. A wall of stiffness K
-//! is passive while K < 2b/T (Colgate and Schenkel 1997): up to there the steady force is judged too. Beside the wall a guide
-//! may hold the hand to a line; then the hand is kicked across that too.
+//! A hand comes down, presses, is kicked, holds still, and lifts. The criteria are the motion of the tip while the hand
+//! holds still, the steady force, and the energy given to the hand beyond that of the models without sampling: at the
+//! grip, with the device's own friction and mass, and without the work of a plane that moves or changes its stiffness.
+//! A wall of stiffness K is passive while K < 2b/T (Colgate and Schenkel 1997): up to there the steady force is judged
+//! too. Beside the wall a guide may hold the hand to a line; then the hand is kicked across that too.
 
 pub mod fluid;
 mod ledger;
@@ -43,7 +42,7 @@ pub(crate) const DT: f64 = 1e-3;
 pub const BOUND_N_M: f64 = 2.0 * DAMPING_N_S_M / DT;
 /// A tip that wobbles by less is still, m.
 pub const STILL_M: f64 = 1e-4;
-/// Energy that nobody feels, J.
+/// Negligible energy, J.
 pub const NO_ENERGY_J: f64 = 1e-6;
 /// The steady force may be off by this share.
 pub const FORCE_ERROR: f64 = 0.1;
@@ -52,8 +51,8 @@ pub(crate) const HEAD_M: f64 = 0.025;
 /// Friction of the wall without a guide.
 const FRICTION: f64 = 0.2;
 const RECOVERY_S: f64 = 0.015;
-/// The hand touches from here on, s; planes move until the second time; the hand holds still between
-/// the third and the fourth, and is away at the end.
+/// Time from which the hand touches, s; planes move until the second time; the hand holds still between the third and
+/// the fourth, and is away at the end.
 const TOUCH_S: f64 = 0.6;
 const MOVED_S: f64 = 3.1;
 const STILL_S: [f64; 2] = [3.6, 4.1];
@@ -62,7 +61,7 @@ const END_S: f64 = 4.6;
 /// Motion of the plane while the hand is kicked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
-    /// It rests.
+    /// The plane rests.
     Still,
     /// It tilts to and fro.
     Tilting,
@@ -89,7 +88,7 @@ pub struct GuideLine {
 const ASIDE_M: [f64; 2] = [0.001, 0.003];
 
 impl GuideLine {
-    /// As stiff and as strong as guides may be.
+    /// The stiffest and strongest guide allowed.
     #[must_use]
     pub fn strongest(normal: DVec3, damping: f64) -> Self {
         let limits = Limits::default();
@@ -101,7 +100,7 @@ impl GuideLine {
         }
     }
 
-    /// Direction in which it pulls: the line lies along y, through the place where the hand touches.
+    /// Direction of its pull: the line lies along y, through the hand's point of contact.
     fn across(&self) -> DVec3 {
         DVec3::Y.cross(self.normal)
     }
@@ -139,7 +138,7 @@ pub enum Path {
     Servo,
     /// A servo elsewhere, whose force is sent 60 times a second.
     Sent,
-    /// A servo that does nothing.
+    /// A servo without force.
     Nothing,
 }
 
@@ -150,7 +149,7 @@ pub struct Run {
     pub hand: Hand,
     /// Stiffness of the wall, N/m.
     pub stiffness: f64,
-    /// Models a second.
+    /// Rate of models, Hz.
     pub rate_hz: f64,
     /// Models are late by up to this share of their period, and as often are lost.
     pub jitter: f64,
@@ -167,12 +166,12 @@ pub struct Run {
 pub struct Outcome {
     /// Movement of the tip while the hand holds still, peak to peak, m.
     pub wobble_m: f64,
-    /// Greatest energy given to the hand that nobody put in, J.
+    /// Greatest energy given to the hand without a source, J.
     pub net_j: f64,
     /// Steady force along the normal, without the guide's, by stiffness times depth.
     pub share: f64,
     /// Stiffness that the servo reported, N/m.
-    pub told_n_m: f64,
+    pub reported_n_m: f64,
     /// Fault that latched the force at zero, if any.
     pub fault: Option<Fault>,
 }
@@ -214,14 +213,14 @@ impl Wall {
     }
 }
 
-/// The wall as the models tell it, without samples: a change is spread over the recovery time.
-struct Told {
+/// The wall of the models, without sampling: a change is spread over the recovery time.
+struct WallModel {
     wall: Wall,
     correction: DVec3,
     speed: f64,
 }
 
-impl Told {
+impl WallModel {
     fn age(&mut self) {
         let (size, shrunk) = (self.correction.length(), self.speed * DT);
         if size > shrunk {
@@ -263,7 +262,7 @@ impl Run {
         wall
     }
 
-    /// Where the hand wants to be at a time.
+    /// Target of the hand at a time.
     fn target(&self, s: f64) -> DVec3 {
         let kicked = (1.0..2.4).contains(&s) && (s * 10.0) as u64 % 2 == 1;
         let depth = match s {
@@ -282,7 +281,6 @@ impl Run {
         tip + DVec3::Z * HEAD_M
     }
 
-    /// The servo's bounds.
     fn limits(&self) -> Limits {
         // A force that is sent elsewhere shows its effect without the guards that would stop it.
         let guarded = match self.path {
@@ -313,13 +311,12 @@ impl Run {
         }
     }
 
-    /// Lets the hand go through it all.
+    /// Runs the hand.
     ///
-    /// # Errors
-    /// The defect of a wall that makes no contact model.
+    /// # Errors The defect of a wall that makes no contact model.
     pub fn go(&self) -> Result<Outcome, &'static str> {
         let limits = self.limits();
-        // A hand that is kicked across the wall's friction would hide what the guide gives.
+        // The wall's friction across the kick would hide the guide's gain.
         let friction = match self.guide {
             Some(_) => 0.0,
             None => FRICTION,
@@ -328,20 +325,20 @@ impl Run {
         let mut servo = Servo::new(limits);
         let mut plant = Plant::omni(self.hand, self.target(0.0));
         let tip = |plant: &Plant| plant.true_position() - DVec3::Z * HEAD_M;
-        let mut told = Told {
+        let mut model_wall = WallModel {
             wall: self.wall(0.0),
             correction: DVec3::ZERO,
             speed: 0.0,
         };
         let mut link = Link::new(self.rate_hz, self.jitter, 1);
         let (mut extent, mut force) = (Extent::NONE, DVec3::ZERO);
-        let (mut push, mut depth, mut told_n_m) = (0.0, 0.0, f64::MAX);
+        let (mut push, mut depth, mut reported_n_m) = (0.0, 0.0, f64::MAX);
         let (mut net_j, mut most_j): (f64, f64) = (0.0, 0.0);
         let mut fault = None;
         for number in 0..(END_S / DT) as usize {
             let s = number as f64 * DT;
             let handle = plant.handle();
-            told.age();
+            model_wall.age();
             if let Some(wall) = link.newest(s, |s| self.wall(s)) {
                 servo.receive(wall.contact(friction, live_s)?, Sender::Same);
                 if let Some(guide) = self.guide {
@@ -351,7 +348,7 @@ impl Run {
                     stiffness: wall.stiffness.min(limits.max_stiffness_n_m),
                     ..wall
                 };
-                told.change(given, handle.position - DVec3::Z * HEAD_M);
+                model_wall.change(given, handle.position - DVec3::Z * HEAD_M);
             }
             let (wanted, tick) = servo.step(&handle, DT);
             fault = fault.or(tick.fault);
@@ -363,8 +360,8 @@ impl Run {
             let (from, before_j) = (tip(&plant), plant.given_j());
             plant.advance(force, self.target(s), DT);
             let to = tip(&plant);
-            let models =
-                told.wall.stored(from) - told.wall.stored(to) + told.correction.dot(to - from);
+            let models = model_wall.wall.stored(from) - model_wall.wall.stored(to)
+                + model_wall.correction.dot(to - from);
             let guided = self
                 .guide
                 .map_or(0.0, |guide| guide.stored(from) - guide.stored(to));
@@ -373,16 +370,16 @@ impl Run {
             if (STILL_S[0]..STILL_S[1]).contains(&s) {
                 extent.include(to);
                 let guided = self.guide.map_or(DVec3::ZERO, |guide| guide.force(to));
-                push += (force - guided).dot(told.wall.normal);
-                depth += told.wall.depth(to);
-                told_n_m = told_n_m.min(tick.stiffness_n_m);
+                push += (force - guided).dot(model_wall.wall.normal);
+                depth += model_wall.wall.depth(to);
+                reported_n_m = reported_n_m.min(tick.stiffness_n_m);
             }
         }
         Ok(Outcome {
             wobble_m: extent.peak_to_peak_m(),
             net_j: most_j,
             share: push / (self.stiffness * depth),
-            told_n_m,
+            reported_n_m,
             fault,
         })
     }
@@ -420,7 +417,7 @@ pub struct Worst {
 }
 
 impl Worst {
-    /// Of runs and how they went.
+    /// The worst of runs and their outcomes.
     #[must_use]
     pub fn of<'a>(all: impl IntoIterator<Item = &'a (Run, Outcome)>) -> Self {
         let mut worst = Self::default();

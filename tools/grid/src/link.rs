@@ -8,7 +8,7 @@ pub(crate) fn random(state: &mut u64) -> f64 {
     (*state >> 40) as f64 / (1u64 << 24) as f64
 }
 
-/// A sender at a steady rate and its messages under way.
+/// A sender at a steady rate, with its messages under way.
 #[derive(Clone, Debug)]
 pub(crate) struct Link<T> {
     period_s: f64,
@@ -19,7 +19,8 @@ pub(crate) struct Link<T> {
 }
 
 impl<T> Link<T> {
-    /// So many messages a second, late by up to a share of their period and as often lost; the first never is.
+    /// A link with a message rate, delays of up to a share of the period, and losses at that share; the first message
+    /// is never lost.
     pub(crate) fn new(rate_hz: f64, jitter: f64, seed: u64) -> Self {
         Self {
             period_s: 1.0 / rate_hz,
@@ -30,7 +31,7 @@ impl<T> Link<T> {
         }
     }
 
-    /// The newest message that arrives up to a time, s, and was not overtaken; `make` is what is sent at a time.
+    /// The newest message that arrives up to a time, s, and was not overtaken; `make` makes the message of a time.
     pub(crate) fn newest(&mut self, s: f64, mut make: impl FnMut(f64) -> T) -> Option<T> {
         while self.next_s <= s {
             let late = self.jitter * self.period_s * random(&mut self.state);

@@ -1,8 +1,9 @@
 //! All forces at once: a hand paints along a guide, through thick paint, over relief, and is pulled across the guide and kicked.
 //!
-//! Hands, grounds, motions of the plane, and time constant and rate of the film are each combined with each; of the other
-//! axes a run has one of the worst values, drawn by a seed. Criteria are those of the other parts of the grid. Bristles that
-//! stick store up to (μ_s·f_n)²/2k, which the ledger does not know, so where they do the energy is judged from the beginning.
+//! Hands, grounds, motions of the plane, and time constant and rate of the film are each combined with each; of the
+//! other axes a run has one of the worst values, drawn by a seed. Criteria are those of the other parts of the grid.
+//! Sticking bristles store up to (μ_s·f_n)²/2k, which the ledger lacks, so with them the energy is judged from the
+//! beginning.
 
 use glam::DVec3;
 
@@ -67,8 +68,8 @@ pub fn painting_grid(path: Path, telling: Telling) -> Vec<ReliefRun> {
     runs
 }
 
-/// True if the hand is still and feels its wall, is given no energy that it or the film had not put in before, and the force
-/// stays within `most_n`, N, and `slew_n_s`, N/s.
+/// True if the hand is still and feels its wall, gets no energy without a source, and the force stays within `most_n`,
+/// N, and `slew_n_s`, N/s.
 #[must_use]
 pub fn is_good(run: &ReliefRun, outcome: &ReliefOutcome, most_n: f64, slew_n_s: f64) -> bool {
     run.is_good(outcome)
@@ -84,7 +85,7 @@ mod tests {
     use crate::tests::SEVENTH;
     use maulstick_haptics::plant::Hand;
 
-    /// Bounds of the device, N and N/s: literals, for the servo's own are what is tested.
+    /// Bounds of the device, N and N/s: literals, because the servo's own are under test.
     const MOST_N: f64 = 3.3;
     const MOST_SLEW_N_S: f64 = 400.0;
 
@@ -140,8 +141,8 @@ mod tests {
         every_hand_is_still(1, 324);
     }
 
-    /// The seeded faults: forces that are sent 60 times a second shake every fingertip, a force of paint that is held without
-    /// its Jacobian gives energy, and a servo that does nothing is not felt.
+    /// The seeded faults: forces sent 60 times a second shake every fingertip, a force of paint held without its
+    /// Jacobian adds energy, and a servo without force is not felt.
     #[test]
     fn a_force_from_afar_one_that_is_held_and_none_are_found_out() {
         let sent = painting_grid(Path::Sent, Telling::True).into_iter();

@@ -1,8 +1,8 @@
 //! Relief in the hand: the runs of the grid over rough ground, a ridge and an edge, across which the hand is drawn and kicked.
 //!
-//! Patches are those of a brush node: 16 × 16 cells around where the hand was when the model was made, late and lost as the
-//! models are. Judged is what the hand was given beyond the work of the models' own force along its true way, felt without
-//! samples, which round a closed way is nothing.
+//! Patches are those of a brush node: 16 × 16 cells around the hand's place at the making of the model, delayed and
+//! lost like the models. The criterion is the hand's gain beyond the work of the models' own force along the true path
+//! without sampling, which vanishes along a closed path.
 
 use glam::DVec3;
 use maulstick_num::sin;
@@ -30,12 +30,12 @@ const CELL_M: f64 = 1e-3;
 pub(super) const COULOMB_N: f64 = 0.06;
 /// Stiffnesses of its walls, N/m.
 const WALLS_N_M: [f64; 5] = [100.0, 300.0, 500.0, 800.0, 1000.0];
-/// The hand is drawn across the relief by so much to each side, and holds still on a flank, m.
+/// Amplitude of a hand that is drawn across the relief, and holds still on a flank, m.
 const DRAWN_M: f64 = 4e-3;
 const FLANK_M: f64 = 1.3e-3;
-/// It paints along a guide by so much to each side, m.
+/// Amplitude of painting along a guide, m.
 const STROKE_M: f64 = 0.03;
-/// Height above bare relief at which it begins, m, and time of its descent, s.
+/// Initial height above bare relief, m, and time of its descent, s.
 const ABOVE_M: f64 = 6e-3;
 const DESCENT_S: f64 = 0.3;
 /// Time that an arm that has painted needs beyond the usual to come to rest, s.
@@ -113,7 +113,7 @@ pub struct ReliefRun {
     pub tilt: Tilt,
     /// Friction, at rest half as much again.
     pub friction: f64,
-    /// Coulomb friction of the device, N, which hides what a hand is given that moves.
+    /// Coulomb friction of the device, N, which hides gains of a moving hand.
     pub coulomb_n: f64,
     /// Film of paint, if the hand goes through one.
     pub film: Option<Film>,
@@ -124,7 +124,7 @@ pub struct ReliefRun {
 pub struct ReliefOutcome {
     /// Movement of the tip while the hand holds still, peak to peak, m.
     pub wobble_m: f64,
-    /// Greatest energy given to the hand that nobody put in, J.
+    /// Greatest energy given to the hand without a source, J.
     pub net_j: f64,
     /// Greatest energy given to hand and device from some time on, J.
     pub rise_j: f64,
@@ -142,7 +142,7 @@ pub struct ReliefOutcome {
     pub fault: Option<Fault>,
 }
 
-/// Where a hand wants to be that paints along a guide and across it.
+/// Target of a hand that paints along a guide and across it.
 fn painting(run: &Run, guide: &GuideLine, s: f64) -> DVec3 {
     let painted_s = s.clamp(TOUCH_S, MOVED_S) - TOUCH_S;
     let drawn = DVec3::new(
@@ -175,7 +175,7 @@ impl ReliefRun {
         }
     }
 
-    /// Time to live of models and guides, s: what is lost shall not fade.
+    /// Time to live of models and guides, s, long enough that losses do not fade.
     fn live_s(&self) -> f64 {
         (6.0 / self.run.rate_hz).max(0.1)
     }
@@ -196,7 +196,7 @@ impl ReliefRun {
         })
     }
 
-    /// Where the hand wants to be at a time.
+    /// Target of the hand at a time.
     fn target(&self, s: f64) -> DVec3 {
         if let Some(guide) = &self.run.guide {
             return painting(&self.run, guide, s);
@@ -215,10 +215,9 @@ impl ReliefRun {
         self.run.target(s) + DVec3::X * aside + kick + DVec3::Y * (1e-3 * sin(3.0 * s.min(MOVED_S)))
     }
 
-    /// Lets the hand go through it all.
+    /// Runs the hand.
     ///
-    /// # Errors
-    /// The defect of a wall, a guide or a film that is refused.
+    /// # Errors The defect of a wall, a guide or a film that is refused.
     pub fn go(&self) -> Result<ReliefOutcome, &'static str> {
         let mut servo = Servo::new(self.run.limits());
         let mut plant = Plant::omni(self.run.hand, self.target(0.0));
@@ -312,8 +311,8 @@ impl ReliefRun {
         })
     }
 
-    /// True if the hand is still, is given no energy, and feels its wall. Friction hides what is given, and a wall beyond
-    /// 2b/T may be softened.
+    /// True if the hand is still, gains no energy, and feels its wall. Friction hides gains, and a wall beyond 2b/T may
+    /// be softened.
     #[must_use]
     pub fn is_good(&self, outcome: &ReliefOutcome) -> bool {
         let judged = self.run.stiffness < super::BOUND_N_M;

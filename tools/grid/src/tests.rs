@@ -1,4 +1,4 @@
-//! What the grid asserts, and the faults that it must find.
+//! Assertions on the grid, and the faults that they must find.
 
 use super::*;
 
@@ -20,10 +20,10 @@ fn are_still(stride: usize, runs: usize) {
         if !run.is_good(outcome) {
             println!("{run:?}: {outcome:?}");
         }
-        // What is not given is told.
+        // A reduced force is reported.
         let told = run.stiffness.min(MAX_STIFFNESS_N_M);
         assert!(
-            (outcome.told_n_m - told).abs() < 1e-9,
+            (outcome.reported_n_m - told).abs() < 1e-9,
             "{run:?}: {outcome:?}"
         );
     }
@@ -60,7 +60,7 @@ fn a_force_sent_60_times_a_second_shakes_a_fingertip() {
     assert_eq!(Worst::of(&arms).fails, 0, "the arm hides it");
 }
 
-/// The other seeded fault: a servo that does nothing is still and gives nothing.
+/// The other seeded fault: a servo without force is still and gives nothing.
 #[test]
 fn a_servo_that_does_nothing_is_found_out() {
     // Whatever the models say.

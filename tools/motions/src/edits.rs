@@ -1,4 +1,4 @@
-//! Operations on the motion of a take. What it is painted with stays in it.
+//! Operations on the motion of a take, which keep its setup.
 
 use std::path::PathBuf;
 
@@ -47,12 +47,15 @@ fn change_all(
 }
 
 pub(crate) fn cut(options: &CutOptions) -> Result<i32, UserError> {
-    let ns = |name: &str, seconds: f64| match seconds >= 0.0 && seconds.is_finite() {
-        true => Ok((seconds * 1e9).round() as u64),
-        false => Err(
-            UserError::usage(format!("{name} {seconds} is no time of a take"))
-                .help("count seconds from its beginning"),
-        ),
+    let ns = |name: &str, seconds: f64| {
+        if seconds >= 0.0 && seconds.is_finite() {
+            Ok((seconds * 1e9).round() as u64)
+        } else {
+            Err(
+                UserError::usage(format!("{name} {seconds} is no time of a take"))
+                    .help("count seconds from its beginning"),
+            )
+        }
     };
     let part = match options.strokes {
         Some([first, last]) => Part::Strokes(first..=last),
@@ -137,7 +140,7 @@ pub(crate) fn join(options: &JoinOptions) -> Result<i32, UserError> {
     Ok(0)
 }
 
-/// True if two takes are painted with the same, but for what their strokes load.
+/// True if two takes have the same setup, except for the loads of their strokes.
 fn is_same(one: &TakeSetup, other: &TakeSetup) -> bool {
     (&one.settings, &one.files) == (&other.settings, &other.files)
 }
@@ -153,7 +156,7 @@ fn in_turn(each: &[(Vec<String>, usize)]) -> Vec<String> {
         return first.clone();
     }
     let of = |(loads, strokes): &(Vec<String>, usize)| {
-        // A take without loads goes on with the first of the others.
+        // A take without loads continues with the first of the others.
         let loads = if loads.is_empty() { first } else { loads };
         let own: Vec<String> = loads.iter().cycle().take(*strokes).cloned().collect();
         own

@@ -23,8 +23,7 @@ fn main() {
 
 /// Runs the subcommand.
 ///
-/// # Errors
-/// A [`UserError`] where a take cannot be read or written, or the motion refuses what is asked.
+/// # Errors A [`UserError`] where a take cannot be read or written, or the operation is refused.
 fn run(command: &MotionCommand) -> Result<i32, UserError> {
     match command {
         MotionCommand::Strokes(options) => info::run(options),

@@ -24,20 +24,20 @@ const LARGEST: usize = 64 << 20;
 /// Closed contours, m.
 type Contours = Vec<Vec<[f64; 2]>>;
 
-/// Reads an outline. `head_m` is the length of the head that a 6-DOF stylus holds which drew it, m.
+/// Reads an outline. `head_m` is the length of the 6-DOF stylus's head that drew it, m.
 ///
-/// # Errors
-/// A [`UserError`] for a file that cannot be read or encloses nothing.
+/// # Errors A [`UserError`] for a file that cannot be read or encloses nothing.
 pub(crate) fn read_outline(path: &Path, head_m: f64) -> Result<Outline, UserError> {
     let bytes = std::fs::read(path).map_err(|error| UserError::reading(path, &error))?;
-    let contours = match bytes.starts_with(MCAP) {
-        true => of_take(&Take::read(path)?, head_m),
-        false => of_text(&bytes).map_err(|(place, what, help)| {
+    let contours = if bytes.starts_with(MCAP) {
+        of_take(&Take::read(path)?, head_m)
+    } else {
+        of_text(&bytes).map_err(|(place, what, help)| {
             let line = place.map_or_else(String::new, |line| format!(":{line}"));
             UserError::usage(what)
                 .at(format!("{}{line}", path.display()))
                 .help(help)
-        })?,
+        })?
     };
     Outline::new(&contours).map_err(refused(path))
 }
@@ -68,10 +68,10 @@ fn of_text(bytes: &[u8]) -> Result<Contours, Fault> {
         fault("this is no outline", help)
     })?;
     let text = text.trim_start_matches('\u{feff}');
-    match text.trim_start().starts_with('<') {
-        true => of_svg(text)
-            .map_err(|error| (None, error, "save it as plain SVG with a path or a polygon")),
-        false => of_table(text),
+    if text.trim_start().starts_with('<') {
+        of_svg(text).map_err(|error| (None, error, "save it as plain SVG with a path or a polygon"))
+    } else {
+        of_table(text)
     }
 }
 
@@ -87,9 +87,10 @@ fn of_svg(text: &str) -> Result<Contours, String> {
         * Affine::translate((-0.5 * width, -0.5 * height));
     let mut contours = Contours::new();
     shapes(tree.root(), to_desk, &mut contours);
-    match contours.is_empty() {
-        true => Err("it holds no shape".to_owned()),
-        false => Ok(contours),
+    if contours.is_empty() {
+        Err("it holds no shape".to_owned())
+    } else {
+        Ok(contours)
     }
 }
 
@@ -167,9 +168,10 @@ fn of_table(text: &str) -> Result<Contours, Fault> {
             contour.push(point);
         }
     }
-    match contours.is_empty() {
-        true => Err((None, "it has no points".to_owned(), LINE)),
-        false => Ok(contours),
+    if contours.is_empty() {
+        Err((None, "it has no points".to_owned(), LINE))
+    } else {
+        Ok(contours)
     }
 }
 

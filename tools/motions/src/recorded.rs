@@ -35,7 +35,7 @@ pub(crate) fn read_motion(path: &Path, device: Option<&str>) -> Result<Take, Use
             .is_some_and(|topic| topic.name == own);
         if is_own {
             match decode::<StylusSample>(&message.bytes) {
-                // What no device may send is no motion.
+                // Faulty samples are skipped.
                 Ok((header, sample)) if sample.fault().is_none() => {
                     let time_ns = header.event_ns;
                     samples.push(TakeSample { time_ns, sample });
@@ -53,7 +53,7 @@ pub(crate) fn read_motion(path: &Path, device: Option<&str>) -> Result<Take, Use
                 .help("cut it with the version of Maulstick that recorded it"),
         );
     }
-    // One may have come late, or twice.
+    // A sample may have come late, or twice.
     samples.sort_by_key(|own| own.time_ns);
     samples.dedup_by_key(|own| own.time_ns);
     let begin_ns = samples.first().map_or(0, |first| first.time_ns);

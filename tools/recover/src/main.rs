@@ -15,7 +15,7 @@ use maulstick::commands::{print_json, progress, progress_bar};
 use maulstick::say;
 use maulstick_painting_setup::document::wrong;
 
-/// At most so many names are printed of a kind.
+/// Greatest number of printed names of a kind.
 const NAMES: usize = 20;
 
 fn main() {

@@ -2,8 +2,8 @@
 
 use eframe::egui::{EventFilter, Key, Modifiers, Response, Ui, Vec2, vec2};
 
-/// Steps to the right and down by the arrow keys that were pressed, which move the focus no more; zero while the field
-/// does not have the keyboard.
+/// Steps to the right and down by arrow keys, which then do not move the focus; zero while the field lacks the
+/// keyboard.
 #[must_use]
 pub fn arrow_steps(ui: &Ui, response: &Response) -> Vec2 {
     if !response.has_focus() {

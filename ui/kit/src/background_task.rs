@@ -15,7 +15,7 @@ pub struct BackgroundTask<T> {
 }
 
 impl<T: Send + 'static> BackgroundTask<T> {
-    /// Begins work; the window of `context` is drawn anew when it is done.
+    /// Begins work; the window of `context` is redrawn when it is done.
     #[must_use]
     pub fn start(context: &Context, name: &str, work: impl FnOnce() -> T + Send + 'static) -> Self {
         let (to_window, found) = channel();

@@ -21,7 +21,7 @@ pub struct DisplayTransform {
 }
 
 impl DisplayTransform {
-    /// For a display.
+    /// Transform to a display.
     #[must_use]
     pub fn new(export: &Export) -> Self {
         Self {
@@ -37,7 +37,7 @@ impl DisplayTransform {
         Vec3::from_array(self.linear(linear))
     }
 
-    /// Linear light that, encoded as sRGB, is what the display has to be sent.
+    /// Linear light whose sRGB encoding is the value for the display.
     #[must_use]
     pub fn linear(&self, linear: [f32; 3]) -> [f32; 3] {
         self.sent(linear).map(|byte| LINEAR[usize::from(byte)])

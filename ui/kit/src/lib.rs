@@ -1,4 +1,4 @@
-//! Parts of which panels and dialogs are made: rows, notifications, swatches, and the languages that they speak.
+//! Parts of panels and dialogs: rows, notifications, swatches, and languages.
 //!
 //! | module | content |
 //! | --- | --- |
@@ -12,7 +12,7 @@
 //! | [`units`] | millimetres or inches |
 //! | [`background_task`] | work on a thread beside the window |
 //!
-//! A part gets the values that it shows, and returns what the painter has changed; it knows neither rig nor settings.
+//! A part gets the values that it shows, and returns the painter's changes; it depends on neither rig nor settings.
 //!
 //! ```
 //! use eframe::egui::{Context, RawInput};

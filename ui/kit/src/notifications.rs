@@ -15,7 +15,7 @@ const WIDTH: f32 = 360.0;
 /// Severity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
-    /// Something was done.
+    /// A completed action.
     Note,
     /// Something was not done.
     Fault,
@@ -57,7 +57,7 @@ impl Notifications {
         }
     }
 
-    /// Notifies that something was not done, and what to do.
+    /// Notifies of a failure, with a remedy.
     pub fn fault(&mut self, what: impl Into<String>, help: impl Into<String>) {
         self.push(Severity::Fault, what.into(), help.into());
     }

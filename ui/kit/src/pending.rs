@@ -30,7 +30,7 @@ impl<T: Clone + PartialEq> Pending<T> {
         self.asked = Some((value, now_s + WAITED_S));
     }
 
-    /// Lets go: the rig's value is shown from now on.
+    /// Discards the request: the rig's value is shown from now on.
     pub fn release(&mut self) {
         self.asked = None;
     }

@@ -19,7 +19,7 @@ const WORDS: f32 = 84.0;
 /// A slider whose ends are this far apart goes by factors.
 const ORDERS: f64 = 20.0;
 
-/// A place of this width for what `add` adds from its left, cut off at its right.
+/// A cell of this width whose content `add` adds from its left, clipped at its right.
 pub fn cell<T>(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui) -> T) -> T {
     let height = ui.spacing().interact_size.y;
     let (_, place) = ui.allocate_space(vec2(width, height));
@@ -47,12 +47,12 @@ pub fn row(ui: &mut Ui, word: &str, control: impl FnOnce(&mut Ui) -> Response) -
     .inner
 }
 
-/// A line of small words under what they explain.
+/// A line of small words under its subject.
 pub fn note(ui: &mut Ui, text: impl Into<String>) {
     ui.label(RichText::new(text).small());
 }
 
-/// A line that says what is wrong.
+/// A line about a fault.
 pub fn wrong(ui: &mut Ui, text: impl Into<String>) {
     let colour = ui.visuals().error_fg_color;
     ui.label(RichText::new(text).color(colour));
@@ -172,9 +172,9 @@ impl<'a> Number<'a> {
 /// A change of a number; `None` if there was none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Change {
-    /// It has just become this: it is being dragged, or was typed or stepped.
+    /// New value while it is dragged, typed or stepped.
     pub moved: Option<f64>,
-    /// The painter is done with it, and it is not what it was in the rig.
+    /// Final value that differs from the rig's.
     pub settled: Option<f64>,
     /// The displayed value, in the displayed unit.
     pub shown: f64,
@@ -182,7 +182,7 @@ pub struct Change {
     pub is_dragged: bool,
 }
 
-/// The sliders of a panel, by name, with what is in the hand.
+/// The sliders of a panel, by name, with the value being dragged.
 #[derive(Clone, Debug, Default)]
 pub struct Sliders {
     held: BTreeMap<String, Pending<f64>>,

@@ -17,7 +17,7 @@ use crate::display_transform::DisplayTransform;
 const TINT: f64 = 10.0;
 /// Thickness of the film by which hiding power is judged, m.
 const FILM_M: f64 = 50e-6;
-/// Largest number of cached mixtures; beyond, all are computed anew.
+/// Greatest number of cached mixtures; above it all are recomputed.
 const KEPT: usize = 256;
 /// Colour of pure thinner, linear.
 const CLEAR: [f32; 3] = [0.75, 0.75, 0.72];
@@ -27,7 +27,7 @@ const CLEAR: [f32; 3] = [0.75, 0.75, 0.72];
 pub struct Showing<'a> {
     /// The paints.
     pub library: &'a Arc<PaintLibrary>,
-    /// The light; the usual one until a scene is known.
+    /// The light; the default one until a scene is known.
     pub light: Option<&'a Light>,
     /// Colours as the display has to be sent them.
     pub tint: &'a Arc<DisplayTransform>,
@@ -39,7 +39,7 @@ pub struct Swatches {
     made: Option<Made>,
 }
 
-/// For what the colours hold.
+/// Conditions of the cached colours.
 #[derive(Debug)]
 struct Made {
     library: Arc<PaintLibrary>,
@@ -68,7 +68,7 @@ impl Swatches {
         colours
     }
 
-    /// Colour of a thick layer of a mixture; `None` for paints that the rig does not have.
+    /// Colour of a thick layer of a mixture; `None` for paints that the rig lacks.
     pub fn mixture(&mut self, showing: Showing<'_>, mixture: &Mixture) -> Option<Color32> {
         let made = self.made_for(showing);
         let text = mixture.to_string();
@@ -119,18 +119,17 @@ impl Made {
 
     fn colour(&self, blend: &Blend) -> Color32 {
         let is_clear = blend.k.0.iter().chain(&blend.s.0).all(|v| *v == 0.0);
-        let linear = match is_clear {
-            true => CLEAR,
-            false => {
-                let seen = self.viewing.coat(blend, &Coat::masstone());
-                seen.linear.map(|channel| channel as f32)
-            }
+        let linear = if is_clear {
+            CLEAR
+        } else {
+            let seen = self.viewing.coat(blend, &Coat::masstone());
+            seen.linear.map(|channel| channel as f32)
         };
         self.tint.colour(linear)
     }
 }
 
-/// The lightest paint of a library: what tints are made with.
+/// The lightest paint of a library, for tints.
 fn whitest(library: &PaintLibrary, viewing: &Viewing) -> Option<Blend> {
     let paints = library.paints().iter();
     let seen = paints.map(|paint| {
@@ -176,9 +175,10 @@ pub fn words(paint: &Paint) -> String {
         percent if percent >= 65.0 => tr!("half opaque ({percent} %)", percent),
         percent => tr!("transparent ({percent} %)", percent),
     };
-    let index = match paint.colour_index.is_empty() {
-        true => tr!("unknown"),
-        false => &paint.colour_index,
+    let index = if paint.colour_index.is_empty() {
+        tr!("unknown")
+    } else {
+        &paint.colour_index
     };
     tr!(
         "{name}\nPigment: {index}\nIn a film of 50 µm it is {cover}.\nMeasured by: {source}",

@@ -20,7 +20,7 @@ impl Units {
         (Self::Inches, tr_noop!("Inches")),
     ];
 
-    /// Unit of small lengths: millimetres of one, digits after the point that are shown, and its sign.
+    /// Unit of small lengths: millimetres of one, displayed digits after the point, and its sign.
     #[must_use]
     pub fn small(self) -> (f64, usize, &'static str) {
         match self {
@@ -46,7 +46,7 @@ impl Units {
         format!("{}{sign}", (width_mm / unit_mm * fine).round() / fine)
     }
 
-    /// A number of large units as it is typed, from centimetres.
+    /// A number of large units for typing, from centimetres.
     #[must_use]
     pub fn typed(self, cm: f64) -> String {
         let (unit_m, _) = self.large();

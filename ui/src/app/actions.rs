@@ -16,7 +16,7 @@ use crate::view::well_labels::{self, Shown};
 use maulstick_client::force_history;
 use maulstick_window_pen::mouse::Pointer;
 
-/// A newton is shown so long, m.
+/// Length of a newton's arrow, m.
 const ARROW_M_N: f64 = 0.02;
 const ARROW: Color32 = Color32::from_rgb(230, 120, 40);
 
@@ -49,7 +49,7 @@ impl App {
         places.map(pointer).collect()
     }
 
-    /// Does what concerns the desk.
+    /// Does an action of the desk.
     pub(super) fn act(&mut self, act: Action, context: &Context) {
         let (Some(canvas), Some(view)) = (self.studio.rig.live.canvas(), &self.desk.view) else {
             return;
@@ -82,9 +82,10 @@ impl App {
     fn load_from(&mut self, context: &Context) {
         let name = self.studio.rig.brush_name();
         // The mouse's newest sample comes back a frame later: it is where its pointer is.
-        let pointer = match self.connection.tracker.is_led_by_mouse(name) {
-            true => self.pointed_at(context),
-            false => None,
+        let pointer = if self.connection.tracker.is_led_by_mouse(name) {
+            self.pointed_at(context)
+        } else {
+            None
         };
         let aim = pointer.or(self.connection.tracker.aim(name).map(|(at, _)| at));
         let under = aim.and_then(|at| {
@@ -113,9 +114,10 @@ impl App {
             return;
         };
         let side = side(&self.studio.preferences);
-        let pose = match is_out(canvas, palette, side) {
-            true => beside(canvas, palette, side),
-            false => over(canvas, palette),
+        let pose = if is_out(canvas, palette, side) {
+            beside(canvas, palette, side)
+        } else {
+            over(canvas, palette)
         };
         if let Ok(edit) = desk_edits::lay_palette(pose, palette.zoom) {
             self.studio.requests.send(edit);
@@ -185,23 +187,24 @@ impl App {
         }
     }
 
-    /// Names the wells on the palette as it is seen.
+    /// Labels the wells on the displayed palette.
     pub(super) fn name_wells(&self, painter: &egui::Painter, view: &View, seen: &[Surface]) {
         let palette = seen.iter().find(|surface| surface.id == PALETTE);
         let (Some(canvas), Some(palette)) = (self.studio.rig.live.canvas(), palette) else {
             return;
         };
         let aim = self.connection.tracker.aim(self.studio.rig.brush_name());
-        let shown = match is_out(canvas, palette, side(&self.studio.preferences)) {
-            true => Some(Shown::All),
-            false => aim.map(|(at, _)| Shown::Under(at)),
+        let shown = if is_out(canvas, palette, side(&self.studio.preferences)) {
+            Some(Shown::All)
+        } else {
+            aim.map(|(at, _)| Shown::Under(at))
         };
         if let Some(shown) = shown {
             well_labels::draw(painter, view, palette, shown);
         }
     }
 
-    /// Shows what a device is to touch that is being fitted.
+    /// Shows the target of a device during its fitting.
     pub(super) fn show_fit(&self, painter: &egui::Painter, view: &View) {
         if let (Some(fit), Some(canvas)) =
             (&self.studio.rig.setup.fit, self.studio.rig.live.canvas())
@@ -210,7 +213,7 @@ impl App {
         }
     }
 
-    /// Draws the force in the hand as an arrow from the brush, as long as its panel is seen.
+    /// Draws the force on the hand as an arrow from the brush, while its panel is visible.
     pub(super) fn draw_force(&self, painter: &egui::Painter, view: &View) {
         let seen =
             self.studio.preferences.window.panels && self.studio.preferences.is_open("Device");
@@ -228,7 +231,7 @@ impl App {
         painter.circle_stroke(from, ring, Stroke::new(1.5, ARROW));
     }
 
-    /// Lays palette and wells for the hand that paints, where the painter has changed it.
+    /// Moves palette and wells to the side of the painting hand, if the painter has changed it.
     pub(super) fn change_hands(&mut self) {
         let side = side(&self.studio.preferences);
         let (Some(canvas), Some(palette)) = (
@@ -249,10 +252,11 @@ impl App {
         if before == Some(key) || !(rests || changes) {
             return;
         }
-        // One that is out stays where it is.
-        let pose = match rests {
-            true => beside(canvas, palette, side),
-            false => palette.pose.clone(),
+        // A palette over the canvas stays.
+        let pose = if rests {
+            beside(canvas, palette, side)
+        } else {
+            palette.pose.clone()
         };
         let wells = mirrored(&palette.wells, size_m(palette));
         if let (Ok(laid), Ok(wells)) = (
@@ -273,9 +277,10 @@ fn over_panel(context: &Context) -> bool {
 
 /// The side of the palette for the hand that paints.
 fn side(preferences: &Preferences) -> Side {
-    match preferences.window.left_handed {
-        false => Side::Left,
-        true => Side::Right,
+    if preferences.window.left_handed {
+        Side::Right
+    } else {
+        Side::Left
     }
 }
 

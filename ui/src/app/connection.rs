@@ -1,4 +1,4 @@
-//! The window's place in the rig, and all that it hears there.
+//! The window's membership in the rig, and all that it receives there.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ pub(super) struct Connection {
     pub(super) wake: Wake,
     pub(super) topics: Topics,
     pub(super) tracker: BrushTracker,
-    /// The membership, kept for as long as the window lives.
+    /// Membership, held for the lifetime of the window.
     pub(super) member: Option<NodeHandle>,
     listener: RigListener,
     monitor: HealthMonitor,
@@ -62,7 +62,6 @@ impl Connection {
         self.fetcher.exchange(&mut rig.live.thumbnails, now_ns);
     }
 
-    /// Leaves the rig.
     pub(super) fn leave(&mut self) {
         if let Some(member) = self.member.take() {
             member.leave();

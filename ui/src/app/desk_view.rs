@@ -1,4 +1,4 @@
-//! The desk as it is seen: where it lies in the window, and what draws it.
+//! The displayed desk: its place in the window, and its renderer.
 
 use std::sync::Arc;
 
@@ -24,9 +24,9 @@ use crate::view::palette_slide::PaletteSlide;
 /// View of the desk.
 #[derive(Default)]
 pub(super) struct DeskView {
-    /// Where the desk lies in the window; `None` until the canvas is known.
+    /// Place of the desk in the window; `None` until the canvas is known.
     pub(super) view: Option<View>,
-    /// The side of the palette as it was last looked at, and the start of the paint node then.
+    /// Side of the palette at the last check, and the start of the paint node then.
     pub(super) side: Option<(Side, u64)>,
     pub(super) scene_renderer: SceneRenderer,
     presenter: Option<Presenter>,
@@ -51,7 +51,7 @@ impl DeskView {
         let bus = Arc::clone(&connection.bus);
         let presenter = Presenter::new(bus, &connection.topics, me, &state.device);
         self.presenter = presenter
-            .inspect_err(|error| tracing::warn!("frames are not told of: {error}"))
+            .inspect_err(|error| tracing::warn!("frames cannot be reported: {error}"))
             .ok();
         let completion = self.presenter.as_ref().map(Presenter::completion);
         let source = Source {
@@ -65,8 +65,8 @@ impl DeskView {
         self.scene_renderer.begin(context, state, export, source);
     }
 
-    /// Lays the desk into the window, beside tools of these widths at its left and right side; under a held brush it
-    /// stays where it is.
+    /// Places the desk in the window, beside tools of these widths at its left and right side; under a held brush it
+    /// stays.
     pub(super) fn place(
         &mut self,
         ui: &Ui,
@@ -106,7 +106,7 @@ impl DeskView {
         self.view = self.held_view.follow(wanted, frame, is_held);
     }
 
-    /// The surfaces as they are seen: the palette may be on its way.
+    /// The displayed surfaces: the palette may be moving.
     pub(super) fn surfaces(&mut self, ui: &Ui, rig: &RigState) -> Vec<Surface> {
         let surfaces = rig.live.scene.iter().flat_map(|scene| &scene.surfaces);
         let mut surfaces: Vec<Surface> = surfaces.cloned().collect();

@@ -68,12 +68,12 @@ impl Hands {
         studio.rig.pen_pressure = self.pen.pressure();
     }
 
-    /// True while a sample is to be sent although the pointer stands still.
+    /// True while samples are due although the pointer stands still.
     pub(super) fn is_held(&self) -> bool {
         self.pointer_path.is_pressed() || self.brush_turn.is_waiting()
     }
 
-    /// Contact of a brush with a surface. What the mouse's own samples say comes late.
+    /// Contact of a brush with a surface. The mouse's own samples arrive late.
     pub(super) fn contact(&self, tracker: &BrushTracker, brush: &str) -> BrushContact {
         let is_held = if tracker.is_led_by_mouse(brush) {
             self.pointer_path.is_pressed()
@@ -83,8 +83,8 @@ impl Hands {
         BrushContact::of(is_held)
     }
 
-    /// True while a brush touches the desk: neither the view nor a surface is moved under it, whoever asks for that, but
-    /// for the painter's free hand.
+    /// True while a brush touches the desk: neither the view nor a surface is then moved under it, except by the
+    /// painter's free hand.
     pub(super) fn holds_desk(&self, tracker: &BrushTracker) -> bool {
         self.pointer_path.is_pressed() || tracker.touches()
     }

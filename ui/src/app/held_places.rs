@@ -3,16 +3,16 @@
 use crate::rig::state::BrushContact;
 use maulstick_client::request::Request;
 
-/// The placements in wait: the desk is not moved under a brush, whoever asks for that.
+/// Waiting placements: the desk is never moved under a brush.
 #[derive(Debug, Default)]
 pub(super) struct HeldPlaces {
     held: Vec<Request>,
 }
 
 impl HeldPlaces {
-    /// The requests that may be sent now, the oldest first: those that waited, once the brushes are lifted, and of
-    /// `requests` all that move no surface or need not wait. The free hand does not wait, and is not overwritten: what
-    /// it places now replaces a placement of that surface asked for before.
+    /// The requests that may be sent now, the oldest first: those that waited, once the brushes are lifted, and from
+    /// `requests` all that move no surface or need not wait. The free hand does not wait, and is not overwritten: its
+    /// placement replaces an earlier request for that surface.
     #[must_use]
     pub(super) fn release(
         &mut self,
@@ -60,7 +60,7 @@ mod tests {
         Request::of(edit.expect("within reach"))
     }
 
-    /// The canvas as large as a window has room for it.
+    /// The canvas at the size of the window.
     fn fit() -> Request {
         let surfaces = PaintingSetup::default().scene().surfaces;
         let area = Rect::from_min_size(pos2(0.0, 0.0), vec2(1000.0, 600.0));
@@ -111,7 +111,7 @@ mod tests {
             sent.extend(places.release(BrushContact::Lifted, Vec::new(), &[]));
             assert_eq!(sent, [zoomed(PALETTE, 1.25)], "{contact:?}");
         }
-        // What is asked for after the hand's counts.
+        // Requests after the hand's take effect.
         let mut places = HeldPlaces::default();
         let mut sent = places.release(BrushContact::Held, Vec::new(), &hand);
         sent.extend(places.release(BrushContact::Held, vec![fit()], &[]));

@@ -3,12 +3,12 @@
 //! | module | holds |
 //! | --- | --- |
 //! | `actions` | actions of the painter: keys, clicks and gestures |
-//! | `studio` | the rig as the window knows it, and what the painter asks of it |
-//! | `connection`, `sending` | what the rig says; requests, in their order among the strokes |
+//! | `studio` | the window's state of the rig, and the painter's requests |
+//! | `connection`, `sending` | messages of the rig; requests, in their order among the strokes |
 //! | `hands` | mouse, pen and gestures |
-//! | `desk_view` | the desk as it is seen |
-//! | `sides` | what stands at the sides of the window |
-//! | `overlay` | what lies over the desk: panels, dialogs, help |
+//! | `desk_view` | the displayed desk |
+//! | `sides` | tools at the sides of the window |
+//! | `overlay` | overlay of the desk: panels, dialogs, help |
 //! | [`rack`] | the brush rack at the edge |
 //! | `held_places` | placements that wait for a brush to lift |
 //! | `window_memory` | title and size of the window, and the painter's habits |
@@ -166,7 +166,7 @@ impl App {
         self.sending.send(context, studio, hands, &self.connection);
     }
 
-    /// Time until statuses, and devices that fall silent, are looked at again: nothing signals them.
+    /// Time until statuses, and silent devices, are checked again, which nothing signals.
     fn next_look(&self) -> Duration {
         let status = self.studio.rig.live.paint.as_ref().map(|node| &node.status);
         let works = status.is_some_and(|status| {
@@ -174,7 +174,7 @@ impl App {
                 || status.drying.is_some()
                 || status.export.is_some()
                 || status.lag_ns > 0
-                // What is in memory alone is never saved.
+                // A painting in memory alone is never saved.
                 || !status.path.is_empty() && !status.all_committed
         });
         let waits = !self.sending.dispatcher.waits().is_empty();
@@ -187,7 +187,7 @@ impl App {
         }
     }
 
-    /// Shows the desk: surfaces, brushes, and what lies at places of it.
+    /// Shows the desk: surfaces, brushes, and marks on it.
     fn show_desk(&mut self, ui: &mut Ui) {
         let is_held = self.hands.holds_desk(&self.connection.tracker);
         let taken = self.overlay.taken(&self.studio.preferences);
@@ -223,7 +223,7 @@ impl App {
         ui.ctx().request_repaint_after(self.next_look());
     }
 
-    /// Shows what lies over the desk, and does what was asked for there.
+    /// Shows the overlay, and does its requests.
     fn show_overlay(&mut self, ui: &mut Ui) {
         let waits = self.sending.dispatcher.waits();
         let work = &mut self.studio.context();

@@ -57,13 +57,13 @@ pub(crate) struct Overlay {
     size_drag: SizeDrag,
     transport: TransportBar,
     pub(crate) motions: Motions,
-    /// The part of the window that the palette covers; nothing opens over it.
+    /// The part of the window covered by the palette; nothing opens over it.
     pub(crate) palette: Option<Rect>,
     /// True while the canvas is shown without tools, and whether the window was full screen before.
     alone: Option<bool>,
 }
 
-/// Actions that hide panels, while one of their controls is dragged: they wait until that is let go.
+/// Actions that hide panels, delayed while one of their controls is dragged.
 #[derive(Default)]
 struct HidingActs {
     later: Vec<Action>,
@@ -72,7 +72,8 @@ struct HidingActs {
 }
 
 impl HidingActs {
-    /// Keeps back what hides the panels until no control of theirs is dragged, so that its end is not missed.
+    /// Delays actions that hide the panels until none of their controls is dragged, so that the end of the drag is not
+    /// missed.
     fn wait_for_drag(&mut self, context: &Context, acts: &mut Vec<Action>) {
         let is_dragged = context.egui_is_using_pointer();
         let hides = |act: &mut Action| matches!(act, Action::Panels | Action::Alone);
@@ -89,7 +90,7 @@ impl HidingActs {
 }
 
 impl Overlay {
-    /// Shows it and follows the keys; what concerns the desk itself is returned.
+    /// Shows the overlay and handles the keys; actions of the desk itself are returned.
     #[must_use]
     pub(crate) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) -> Vec<Action> {
         let context = ui.ctx().clone();
@@ -169,7 +170,7 @@ impl Overlay {
         }
     }
 
-    /// True if the window may close now; where the painting has no name yet the painter is asked first.
+    /// True if the window may close now; for a painting without a name the painter is asked first.
     pub(crate) fn may_close(&mut self, rig: &RigState) -> bool {
         self.files.may_close(rig)
     }
@@ -180,8 +181,8 @@ impl Overlay {
         self.files.closes()
     }
 
-    /// Takes in the outcome of a request; a failure becomes a notification, and so does an edit
-    /// whose effect may be out of view.
+    /// Handles the outcome of a request; a failure becomes a notification, and so does an edit whose effect may be out
+    /// of view.
     pub(crate) fn on_reply(&mut self, outcome: &Outcome, work: &mut PanelContext<'_>) {
         if self.files.on_reply(outcome, work) {
             return;
@@ -197,7 +198,7 @@ impl Overlay {
         }
     }
 
-    /// Does what a key asks for; `false` where it concerns the desk.
+    /// Does the action of a key; `false` for one of the desk.
     fn follow(&mut self, context: &Context, act: Action, work: &mut PanelContext<'_>) -> bool {
         self.motions.follow(act)
             || self.help_pages.follow(act)
@@ -237,7 +238,7 @@ impl Overlay {
         true
     }
 
-    /// Changes what of the canvas is seen, and whether beside tools.
+    /// Updates the view of the canvas, and the tools beside it.
     fn follow_window(
         &mut self,
         context: &Context,
@@ -248,9 +249,10 @@ impl Overlay {
             Action::Mirror => {
                 let mirrored = &mut work.preferences.window.mirrored;
                 *mirrored = !*mirrored;
-                let words = match *mirrored {
-                    true => tr!("The view is mirrored; the painting is not"),
-                    false => tr!("The view is no longer mirrored"),
+                let words = if *mirrored {
+                    tr!("The view is mirrored; the painting is not")
+                } else {
+                    tr!("The view is no longer mirrored")
                 };
                 work.notifications.note(words.to_owned());
             }
@@ -330,9 +332,10 @@ fn follow_mouse(act: Action, work: &mut PanelContext<'_>) -> bool {
         Action::Follow => {
             let follows = &mut work.preferences.brushes.mouse.follows;
             *follows = !*follows;
-            let words = match *follows {
-                true => tr!("The mouse's brush follows the stroke"),
-                false => tr!("The mouse's brush keeps its turn"),
+            let words = if *follows {
+                tr!("The mouse's brush follows the stroke")
+            } else {
+                tr!("The mouse's brush keeps its turn")
             };
             work.notifications.note(words.to_owned());
         }

@@ -17,7 +17,7 @@ use crate::widgets::context::PanelContext;
 
 /// Width of the rack, points.
 pub const WIDTH: f32 = 72.0;
-/// Space around what it holds, points.
+/// Margin around its content, points.
 const MARGIN: f32 = 6.0;
 /// Height of a brush with its name, points.
 const CELL: f32 = 88.0;
@@ -26,7 +26,7 @@ const NAME: f32 = 15.0;
 /// Size of its letters, points, and the share of it that they have at least.
 const LETTERS: f32 = 11.0;
 const SMALLEST: f32 = 0.8;
-/// Height of the mark at an edge beyond which the list goes on, points.
+/// Height of the mark at an edge where the list continues, points.
 const MORE: f32 = 7.0;
 
 /// A place of the rack.
@@ -40,12 +40,13 @@ struct Place<'a> {
     in_hand: bool,
 }
 
-/// Shows the rack over the whole height of the window, at the hand's side; returns what it covers.
+/// Shows the rack over the whole height of the window, at the hand's side; returns its area.
 pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) -> Rect {
     let window = context.content_rect();
-    let side = match work.preferences.rack_is_left() {
-        false => Align2::RIGHT_TOP,
-        true => Align2::LEFT_TOP,
+    let side = if work.preferences.rack_is_left() {
+        Align2::LEFT_TOP
+    } else {
+        Align2::RIGHT_TOP
     };
     let shown = Area::new(Id::unique("rack"))
         .order(Order::Middle)
@@ -83,7 +84,7 @@ pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) -> Rect {
     shown.response.rect
 }
 
-/// Marks the edges of a list beyond which it goes on: above, below.
+/// Marks the edges beyond which a list continues: above, below.
 fn more(ui: &Ui, list: Rect, [above, below]: [bool; 2]) {
     let colour = ui.visuals().strong_text_color();
     let middle = list.center().x;
@@ -163,7 +164,7 @@ fn brushes(ui: &mut Ui, work: &mut PanelContext<'_>) {
     }
 }
 
-/// A brush of a file of the painter's: true if it is in the hand, and itself if it is chosen.
+/// A brush from the painter's file: true if it is in the hand, and the file if it is chosen.
 fn own_brush(
     ui: &mut Ui,
     work: &mut PanelContext<'_>,
@@ -248,9 +249,10 @@ fn cell(ui: &mut Ui, work: &PanelContext<'_>, place: &Place<'_>) -> Response {
                 .rect_stroke(area, 6.0, stroke, StrokeKind::Inside);
         }
     }
-    match place.file.about.is_empty() {
-        true => response.on_hover_text(words),
-        false => response.on_hover_text(format!("{words}\n{}", known(&place.file.about))),
+    if place.file.about.is_empty() {
+        response.on_hover_text(words)
+    } else {
+        response.on_hover_text(format!("{words}\n{}", known(&place.file.about)))
     }
 }
 

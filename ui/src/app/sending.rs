@@ -1,5 +1,5 @@
-//! Requests on their way to the rig, in their order among the strokes; what has to wait for a brush to lift, or is
-//! refused until then.
+//! Requests to the rig, in their order among the strokes; those that wait for a brush to lift, or are refused until
+//! then.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -75,7 +75,7 @@ impl Sending {
         let orders = studio.requests.take_session_orders();
         let shown = (&mut studio.rig, &mut studio.notifications);
         self.sessions.poll(context, orders, shown);
-        // The mouse's samples until then are sent, and those of others heard.
+        // The mouse's samples until then are sent, and those of others received.
         let heard_ns = tracker.heard_until_ns().min(now_ns);
         let asked_ns = studio.rig.live.now_ns.max(heard_ns);
         for follow_up in studio.requests.take_follow_ups() {
@@ -100,7 +100,7 @@ impl Sending {
         let oldest = [self.barrier.oldest_ns(), self.dispatcher.oldest_ns()];
         let since_ns = oldest.into_iter().flatten().min();
         if let Err(error) = self.pending.send(now_ns, since_ns) {
-            tracing::warn!("the brushes are not told what is pending: {error}");
+            tracing::warn!("pending settings cannot be sent to the brushes: {error}");
         }
         if self.barrier.is_waiting() || since_ns.is_some() {
             context.request_repaint_after(BARRIER_LOOK);

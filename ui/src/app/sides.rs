@@ -1,4 +1,4 @@
-//! What stands at the sides of the window: the rack at that of the hand, the column of panels where the painter puts it.
+//! Tools at the sides of the window: the rack at that of the hand, the column of panels at the painter's choice.
 
 use crate::app::rack;
 use crate::settings::preferences::Preferences;
@@ -6,17 +6,18 @@ use crate::settings::window_side::WindowSide;
 
 /// Width of the column's inside, points.
 pub(crate) const COLUMN: f32 = 314.0;
-/// Distance of the column from what is beside it, points.
+/// Distance of the column from its neighbours, points.
 pub(crate) const MARGIN: f32 = 8.0;
-/// In a window narrower than this the rack gives way to the column, points.
+/// Width of the window below which the column replaces the rack, points.
 pub(crate) const NARROW: f32 = 1000.0;
 
-/// The side of the rack, as it is seen.
+/// Displayed side of the rack.
 #[must_use]
 pub(crate) fn rack_side(preferences: &Preferences) -> WindowSide {
-    match preferences.rack_is_left() {
-        false => WindowSide::Right,
-        true => WindowSide::Left,
+    if preferences.rack_is_left() {
+        WindowSide::Left
+    } else {
+        WindowSide::Right
     }
 }
 
@@ -29,12 +30,13 @@ pub(crate) fn column_side(preferences: &Preferences) -> WindowSide {
         .unwrap_or_else(|| rack_side(preferences))
 }
 
-/// Width of the column at a side with what surrounds it, points; 0 if it is not there.
+/// Width of the column at a side with its margins, points; 0 if it is not there.
 #[must_use]
 pub(crate) fn column_at(preferences: &Preferences, side: WindowSide) -> f32 {
-    match preferences.window.panels && column_side(preferences) == side {
-        true => COLUMN + 6.0 * MARGIN,
-        false => 0.0,
+    if preferences.window.panels && column_side(preferences) == side {
+        COLUMN + 6.0 * MARGIN
+    } else {
+        0.0
     }
 }
 
@@ -47,9 +49,10 @@ pub(crate) fn has_rack(preferences: &Preferences) -> bool {
 /// Width of the rack at a side, points; 0 if it is not there.
 #[must_use]
 pub(crate) fn rack_at(preferences: &Preferences, side: WindowSide) -> f32 {
-    match has_rack(preferences) && rack_side(preferences) == side {
-        true => rack::WIDTH,
-        false => 0.0,
+    if has_rack(preferences) && rack_side(preferences) == side {
+        rack::WIDTH
+    } else {
+        0.0
     }
 }
 

@@ -1,4 +1,4 @@
-//! The rig as the window knows it, and what the painter asks of it and is told.
+//! The window's state of the rig, and the painter's requests and notifications.
 
 use maulstick_ui_kit::notifications::Notifications;
 
@@ -7,12 +7,11 @@ use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::widgets::context::PanelContext;
 
-/// What panels read and change.
+/// Data that panels read and change.
 #[derive(Debug)]
 pub(super) struct Studio {
     /// State of the rig.
     pub(super) rig: RigState,
-    /// Requests to it.
     pub(super) requests: Requests,
     /// Settings that are remembered.
     pub(super) preferences: Preferences,

@@ -15,10 +15,10 @@ use crate::sessions::tests::{recording, replay};
 use crate::settings::brush_library::of_library;
 use crate::test_support::overlay_bench::{Bench, ctrl, press, window};
 
-/// Presses of Tab at most: more than there are controls.
+/// Greatest number of presses of Tab: more than there are controls.
 const MOST: usize = 400;
 
-/// A control: what it is, its name, and its number.
+/// A control: its role, its name, and its number.
 type Control = (Role, String, accesskit::NodeId);
 
 /// The controls of a window that act.
@@ -60,7 +60,7 @@ fn reached<T>(harness: &mut Harness<'_, T>) -> BTreeSet<accesskit::NodeId> {
     reached
 }
 
-/// What no screen reader can name, and what no keyboard reaches, among the controls that were not there before.
+/// New controls without a name for screen readers, or out of reach of the keyboard.
 fn faults<T>(harness: &mut Harness<'_, T>, before: &BTreeSet<Control>) -> Vec<String> {
     let controls = &controls(harness) - before;
     let reached = reached(harness);
@@ -153,12 +153,12 @@ fn a_control_without_name_or_keyboard_is_found() {
     );
 }
 
-/// An action by the name under which it is kept.
+/// An action by its stored name.
 fn action(name: &str) -> Result<Action, Error> {
     Action::deserialize(StrDeserializer::new(name))
 }
 
-/// All actions: who asks for another is told their names.
+/// All actions; an unknown name is answered with theirs.
 fn actions() -> Vec<Action> {
     let words = action("").expect_err("no action").to_string();
     let names = words.split('`').skip(3).step_by(2);

@@ -1,4 +1,4 @@
-//! Title and size of the window, and the painter's habits, which are kept.
+//! Title and size of the window, and the painter's preferences, which are stored.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use crate::app::studio::Studio;
 use crate::dialogs::paths;
 use crate::settings::preferences::Preferences;
 
-/// What outlives the window, and its title.
+/// State that outlives the window, and its title.
 #[derive(Debug)]
 pub(super) struct WindowMemory {
     title: String,
@@ -20,7 +20,7 @@ pub(super) struct WindowMemory {
 }
 
 impl WindowMemory {
-    /// Reads the preferences; what is wrong with them is notified.
+    /// Reads the preferences; faults are notified.
     pub(super) fn read(notifications: &mut Notifications) -> Self {
         let file = Preferences::place();
         let read = file
@@ -77,14 +77,14 @@ impl WindowMemory {
     }
 }
 
-/// Remembers the size of the window once nobody drags it.
+/// Stores the size of the window when it is not being dragged.
 fn remember_size(context: &Context, preferences: &mut Preferences) {
     let size = context.input(|input| {
         let whole = input.viewport().fullscreen.unwrap_or(false);
         let rests = !whole && !input.pointer.any_down() && input.stable_dt < 0.5;
         rests.then(|| input.content_rect().size())
     });
-    // The window system does not know of the text size.
+    // The window system does not include the text size.
     if let Some(size) = size.map(|size| size * context.zoom_factor()) {
         preferences.window.size = size.round().into();
     }

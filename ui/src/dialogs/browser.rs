@@ -20,15 +20,15 @@ use pictures::Pictures;
 
 /// Height of the list, points.
 const HEIGHT: f32 = 176.0;
-/// Room for the small picture of a painting, points.
+/// Size of a painting's small picture, points.
 pub(super) const PICTURE: Vec2 = vec2(40.0, 30.0);
 
 /// Purpose of the path: an existing file to read, or a file to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// One that is there is read.
+    /// An existing file is read.
     Read,
-    /// One that need not be there is written.
+    /// A file is written, new or existing.
     Write,
 }
 
@@ -72,7 +72,7 @@ impl Browser {
         self.pictures.as_mut()
     }
 
-    /// The same in a folder whose entries are known.
+    /// The chooser with a folder whose entries are known.
     #[cfg(test)]
     pub(crate) fn listing(mut self, entries: Vec<Entry>, kinds: &'static [&'static str]) -> Self {
         self.folder = Folder::of(self.folder.path, kinds, entries);
@@ -92,7 +92,6 @@ impl Browser {
         self.folder.go(split(&self.text).0);
     }
 
-    /// The whole path.
     #[must_use]
     pub(crate) fn path(&self) -> PathBuf {
         paths::whole(&self.text)
@@ -139,7 +138,7 @@ impl Browser {
         }
     }
 
-    /// The entries that begin as typed; to write, all entries if none does.
+    /// The entries that begin with the typed text; for writing, all entries if none does.
     fn fitting(&mut self, context: &Context) -> Vec<Entry> {
         let typed = split(&self.text).1.to_lowercase();
         let Some(Ok(entries)) = self.folder.entries(context) else {
@@ -147,13 +146,14 @@ impl Browser {
         };
         let begins = |entry: &&Entry| entry.name.to_lowercase().starts_with(&typed);
         let fitting: Vec<Entry> = entries.iter().filter(begins).cloned().collect();
-        match fitting.is_empty() && self.purpose == Purpose::Write {
-            true => entries.to_vec(),
-            false => fitting,
+        if fitting.is_empty() && self.purpose == Purpose::Write {
+            entries.to_vec()
+        } else {
+            fitting
         }
     }
 
-    /// Completes what was typed as far as all that fit agree.
+    /// Completes the typed text as far as all matches agree.
     fn complete(&mut self, ui: &Ui, fitting: &[Entry]) {
         let marked = self.marked.and_then(|marked| fitting.get(marked));
         let common = match marked {
@@ -177,7 +177,7 @@ impl Browser {
         self.set(text);
     }
 
-    /// Goes into a folder, or takes a file.
+    /// Enters a folder, or chooses a file.
     fn take(&mut self, ui: &Ui, entry: &Entry) -> Option<PathBuf> {
         let kept = self.text.len() - split(&self.text).1.len();
         let text = format!("{}{}", &self.text[..kept], as_typed(entry));
@@ -289,14 +289,15 @@ impl Keys {
             let prefers = CCursorRange::one(range.primary);
             range == prefers
         });
-        match is_at_end && pressed(Key::ArrowRight) {
-            true => Self::Complete,
-            false => Self::Nothing,
+        if is_at_end && pressed(Key::ArrowRight) {
+            Self::Complete
+        } else {
+            Self::Nothing
         }
     }
 }
 
-/// The folder of what was typed, and the rest after its last `/`.
+/// The folder of the typed text, and the rest after its last `/`.
 fn split(text: &str) -> (PathBuf, &str) {
     match text.rfind('/') {
         Some(at) => (paths::whole(&text[..=at]), &text[at + 1..]),
@@ -305,9 +306,10 @@ fn split(text: &str) -> (PathBuf, &str) {
 }
 
 fn as_typed(entry: &Entry) -> String {
-    match entry.is_folder {
-        true => format!("{}/", entry.name),
-        false => entry.name.clone(),
+    if entry.is_folder {
+        format!("{}/", entry.name)
+    } else {
+        entry.name.clone()
     }
 }
 

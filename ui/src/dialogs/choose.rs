@@ -25,13 +25,13 @@ pub(crate) struct ChooseFile {
     kind: Kind,
     title: &'static str,
     browser: Browser,
-    /// What a recording takes the place of.
+    /// Unsaved state that a recording would replace.
     unkept: UnsavedState,
     wrong: Option<String>,
 }
 
 impl ChooseFile {
-    /// A picture of `folder`; `title` says what it is for.
+    /// A picture of `folder`; `title` is its purpose.
     #[must_use]
     pub(crate) fn picture(folder: &Path, title: &'static str) -> Self {
         Self {
@@ -100,7 +100,7 @@ impl ChooseFile {
     }
 }
 
-/// What the field begins with.
+/// Initial text of the field.
 fn begin(folder: &Path) -> String {
     format!("{}/", paths::shown(folder).trim_end_matches('/'))
 }

@@ -1,5 +1,5 @@
-//! Dialog before the window closes on a painting that has no name, or is not whole in its file: says where it is kept,
-//! or that it would be gone.
+//! Dialog before the window closes on a painting that has no name, or is not whole in its file: it says where the
+//! painting is kept, or that it would be lost.
 
 use std::path::PathBuf;
 
@@ -9,27 +9,24 @@ use crate::dialogs::dialog::{self, Answer, Foot, in_words};
 use crate::dialogs::paths;
 use crate::rig::state::RigState;
 
-/// What closing does to the painting.
+/// Effect of closing on the painting.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Fate {
     /// It is kept as a sketch in this folder.
     Kept(PathBuf),
-    /// It is in memory alone, and gone.
+    /// It is in memory alone, and lost.
     Gone,
-    /// Its file lacks what came last, for this reason.
+    /// Its file lacks the latest strokes, for this reason.
     Unwritten(String),
 }
 
 /// Decision of the painter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Decision {
-    /// Nothing yet.
     None,
-    /// The window stays.
     Stay,
     /// The painting is to get a name first.
     Name,
-    /// The window closes.
     Close,
 }
 
@@ -40,8 +37,8 @@ pub(super) struct ClosePainting {
 }
 
 impl ClosePainting {
-    /// The question for the painting on the easel; `None` where there is nothing to ask: nothing was painted, or all of it
-    /// is in a file with a name.
+    /// The question for the current painting; `None` where none is needed: nothing was painted, or all of it is in a
+    /// file with a name.
     #[must_use]
     pub(super) fn of(rig: &RigState) -> Option<Self> {
         let status = &rig.live.paint.as_ref()?.status;
@@ -59,7 +56,6 @@ impl ClosePainting {
         Some(Self { fate })
     }
 
-    /// Shows the dialog.
     pub(super) fn show(&mut self, context: &Context) -> Decision {
         let mut names = false;
         let answer = dialog::show(context, tr!("Close Maulstick"), |ui| {
@@ -85,9 +81,10 @@ impl ClosePainting {
                 ),
             };
             let text = RichText::new(words);
-            match warns {
-                true => ui.label(text.color(dialog::wrong(ui.visuals()))),
-                false => ui.label(text),
+            if warns {
+                ui.label(text.color(dialog::wrong(ui.visuals())))
+            } else {
+                ui.label(text)
             };
             ui.add_space(6.0);
             names = ui.button(tr!("Save under a name …")).clicked();

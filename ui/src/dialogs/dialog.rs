@@ -24,18 +24,18 @@ pub(crate) struct Foot {
     pub entered: bool,
     /// The pending work; it cannot be started twice.
     pub busy: Option<&'static str>,
-    /// What is asked for first, where nothing is chosen that could be confirmed.
+    /// Request for the missing choice, where nothing can be confirmed yet.
     pub lacks: Option<&'static str>,
 }
 
 /// Decision of the painter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Answer {
-    /// Nothing yet.
+    /// The dialog stays open.
     Stay,
-    /// To leave.
+    /// The dialog is cancelled.
     Leave,
-    /// To go.
+    /// The dialog is confirmed.
     Go,
 }
 
@@ -45,16 +45,16 @@ pub(crate) fn first() -> Id {
     Id::unique("first of the dialog")
 }
 
-/// The colour of what is wrong.
+/// Colour of faults.
 #[must_use]
 pub(crate) fn wrong(visuals: &Visuals) -> Color32 {
-    match visuals.dark_mode {
-        true => Color32::from_rgb(240, 150, 90),
-        false => Color32::from_rgb(166, 62, 0),
+    if visuals.dark_mode {
+        Color32::from_rgb(240, 150, 90)
+    } else {
+        Color32::from_rgb(166, 62, 0)
     }
 }
 
-/// Shows a dialog.
 pub(crate) fn show(
     context: &Context,
     title: &str,
@@ -110,9 +110,10 @@ fn below(ui: &mut Ui, foot: &Foot) -> Answer {
         ui.add_space(4.0);
     }
     let can = foot.busy.is_none() && foot.lacks.is_none();
-    let mut answer = match foot.entered && can {
-        true => Answer::Go,
-        false => Answer::Stay,
+    let mut answer = if foot.entered && can {
+        Answer::Go
+    } else {
+        Answer::Stay
     };
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         let go = RichText::new(foot.go).strong();

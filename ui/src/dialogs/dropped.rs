@@ -19,7 +19,7 @@ pub(crate) const KINDS: &str = tr_noop!(
     "Drop a painting (.maul), a recording (.mcap), a picture to look at (PNG, JPEG, TIFF, OpenEXR, OpenRaster) or a brush (.toml)."
 );
 
-/// A file that was dropped, as it was found to be.
+/// A dropped file, by its kind.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Dropped {
     /// A painting: it is opened.
@@ -30,11 +30,9 @@ pub(crate) enum Dropped {
     Recording(PathBuf),
     /// A brush file: the brush in hand becomes it.
     Brush(Box<BrushFile>),
-    /// Something else.
     Nothing {
         /// Description of the file.
         what: String,
-        /// Advice.
         help: String,
     },
 }
@@ -55,7 +53,7 @@ pub(crate) fn found(path: &Path) -> Dropped {
         Err(error) => {
             return nothing(
                 tr!("{name} cannot be read: {error}", name, error),
-                tr!("See that it is there and that you may read it."),
+                tr!("Check that it exists and that you may read it."),
             );
         }
     };
@@ -104,11 +102,11 @@ fn brush(path: &Path, name: &str) -> Dropped {
     };
     Dropped::Nothing {
         what: tr!("{name} is no brush that can be used: {wrong}", name, wrong),
-        help: tr!("Brushes are files as docs/brushes.md says.").to_owned(),
+        help: tr!("docs/brushes.md describes brush files.").to_owned(),
     }
 }
 
-/// Shows what dropping the file over the window would do.
+/// Shows the effect of dropping the file over the window.
 pub(crate) fn hint(context: &Context) {
     let hovered = context.input(|input| {
         let first = input.raw.hovered_files.first();

@@ -95,7 +95,7 @@ impl ExportPicture {
         }
     }
 
-    /// The same with a folder whose entries are known.
+    /// The dialog with a folder whose entries are known.
     #[cfg(test)]
     pub(crate) fn with(mut self, browser: Browser) -> Self {
         self.browser = browser;
@@ -142,7 +142,6 @@ impl ExportPicture {
         }
     }
 
-    /// Shows the dialog.
     pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
         let mut taken = None;
         let answer = dialog::show(context, tr!("Export"), |ui| {

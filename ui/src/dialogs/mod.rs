@@ -1,14 +1,14 @@
-//! Files in the window: new, open, save, save as, export, dropped files. Nothing is sent twice, and the desk
-//! goes on while an answer is pending.
+//! Files in the window: new, open, save, save as, export, dropped files. Nothing is sent twice, and the desk stays
+//! usable while an answer is pending.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | `dialog`, `browser`, `paths` | parts of dialogs: frame, file chooser with the listing of a folder, paths |
 //! | `new`, `open`, `save_as`, `export`, `choose` | one dialog each |
 //! | `close` | asks before the window closes on a painting without a name |
-//! | `sketch_offer` | the sketches of before |
+//! | `sketch_offer` | earlier sketches |
 //! | `dropped` | files dropped on the window |
-//! | `painting_file` | folder and name that they propose, what a command has done with it |
+//! | `painting_file` | proposed folder and name, and the result of a command |
 //! | `save_status` | line at the lower edge |
 
 mod browser;
@@ -92,7 +92,7 @@ impl Files {
         self.dialog.is_some()
     }
 
-    /// True if the window may close now; else the painter is asked.
+    /// True if the window may close now; otherwise the painter is asked.
     pub(crate) fn may_close(&mut self, rig: &RigState) -> bool {
         if self.closes {
             return true;
@@ -112,7 +112,7 @@ impl Files {
         self.closes
     }
 
-    /// Does what a key asks for; `false` where it is about no file.
+    /// Does the action of a key; `false` if it is not about files.
     pub(crate) fn follow(
         &mut self,
         context: &Context,
@@ -164,7 +164,7 @@ impl Files {
             .with_sketches(sketches.map(Sketches::folder))
     }
 
-    /// The dialog that picks a picture: beside the one that is known, else beside the painting.
+    /// The dialog for a picture: beside the known one, else beside the painting.
     fn picture(known: Option<&Path>, title: &'static str, work: &PanelContext<'_>) -> ChooseFile {
         let known = known
             .and_then(Path::parent)
@@ -173,7 +173,7 @@ impl Files {
         ChooseFile::picture(&folder, title)
     }
 
-    /// Asks for a recording to play, and proposes one that is known.
+    /// Asks for a recording to play, and proposes the known one.
     fn choose_recording(&mut self, known: Option<&Path>, work: &mut PanelContext<'_>) {
         if work.rig.replay.is_some() {
             work.notifications.fault(
@@ -190,8 +190,8 @@ impl Files {
     fn save(&mut self, work: &mut PanelContext<'_>) {
         let Some(node) = &work.rig.live.paint else {
             work.notifications.fault(
-                tr!("nothing is known of the painting yet"),
-                tr!("wait for the painting engine: it comes back by itself"),
+                tr!("the painting is not loaded yet"),
+                tr!("wait until the painting engine has restarted"),
             );
             return;
         };
@@ -200,9 +200,10 @@ impl Files {
             _ if work.rig.is_sketch() => self.save_as(work),
             (path, all) => {
                 let file = paths::shown(Path::new(path));
-                work.notifications.note(match all {
-                    true => tr!("Saved to {file}", file),
-                    false => tr!("Saving to {file} …", file),
+                work.notifications.note(if all {
+                    tr!("Saved to {file}", file)
+                } else {
+                    tr!("Saving to {file} …", file)
                 });
             }
         }
@@ -213,7 +214,7 @@ impl Files {
         self.begin(Dialog::SaveAs(save_as));
     }
 
-    /// Shows what is open, and follows what is dropped.
+    /// Shows the open dialog, and handles dropped files.
     pub(crate) fn show(
         &mut self,
         context: &Context,
@@ -317,7 +318,7 @@ impl Files {
         }
     }
 
-    /// Takes in the outcome of a request; `false` if it was about no file.
+    /// Handles the outcome of a request; `false` if it was not about files.
     pub(crate) fn on_reply(&mut self, outcome: &Outcome, work: &mut PanelContext<'_>) -> bool {
         let Request::Command { command, .. } = &outcome.request else {
             return false;
@@ -332,7 +333,7 @@ impl Files {
         match &outcome.result {
             Ok(detail) => {
                 self.move_tracing(command, work);
-                // Some answers hold nothing but the path, which is shown already.
+                // Some answers contain only the path, which is shown already.
                 let said = detail.to_string();
                 let is_told = done.contains(&paths::shown(Path::new(&said)));
                 let sentence = (!is_told).then(|| in_words(&said, ""));
@@ -451,7 +452,7 @@ impl Files {
     }
 }
 
-/// Sends a command about files to who does it.
+/// Sends a command about files to its node.
 fn ask(command: Command, work: &mut PanelContext<'_>) -> Request {
     work.rig.switching |= switches(&command);
     work.requests.send(command.clone());

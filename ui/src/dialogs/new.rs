@@ -15,7 +15,7 @@ use crate::dialogs::dialog::{self, Answer, Foot, line};
 use crate::dialogs::open::discard_prompt::UnsavedState;
 use crate::dialogs::paths;
 
-/// Sizes that are chosen with a click: name, width and height, cm.
+/// Sizes for choosing with a click: name, width and height, cm.
 const SIZES: [(&str, f64, f64); 3] = [("A5", 21.0, 14.8), ("A4", 29.7, 21.0), ("A3", 42.0, 29.7)];
 /// Sizes that are usual in a unit, in that unit.
 const fn usual(units: Units) -> [(&'static str, &'static str, &'static str); 2] {
@@ -32,8 +32,8 @@ const GROUNDS: [(&str, &str); 4] = [
     (FILE, tr_noop!("A file …")),
 ];
 const FILE: &str = "";
-/// Bytes that a cell takes when it is painted with three paints: their counts, its colour and height as
-/// they are shown, and the same in the window.
+/// Memory of a cell painted with three paints, bytes: their counts, its displayed colour and height, and the same in
+/// the window.
 const CELL_BYTES: f64 = 3.0 * 4.0 + 14.0 + 16.0;
 
 /// Form for a new painting.
@@ -80,7 +80,7 @@ impl NewPainting {
         }
     }
 
-    /// Takes in the rig's refusal.
+    /// Shows the rig's refusal.
     pub(crate) fn refused(&mut self, words: String) {
         self.wrong = Some(words);
     }
@@ -146,7 +146,6 @@ impl NewPainting {
         named(&writable(&path, paths::PAINTING)?)
     }
 
-    /// Shows the dialog.
     pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
         let answer = dialog::show(context, tr!("New painting"), |ui| {
             let entered = self.fields(ui);

@@ -30,7 +30,7 @@ pub(crate) struct OpenPainting {
 }
 
 impl OpenPainting {
-    /// One of `folder`, or one of the recent ones.
+    /// A painting of `folder`, or a recent one.
     #[must_use]
     pub(crate) fn new(folder: &Path, recent: RecentList, unkept: UnsavedState) -> Self {
         let shown = paths::shown(folder);
@@ -51,14 +51,13 @@ impl OpenPainting {
         self
     }
 
-    /// Lists the sketches.
     pub(crate) fn list_sketches(&mut self) {
         if let Some(folder) = &self.sketches {
             self.browser.set(format!("{}/", paths::shown(folder)));
         }
     }
 
-    /// Takes in the rig's refusal.
+    /// Shows the rig's refusal.
     pub(crate) fn refused(&mut self, words: String) {
         self.wrong = Some(words);
     }
@@ -68,7 +67,7 @@ impl OpenPainting {
         self.browser.set(paths::shown(path));
     }
 
-    /// The same with a folder whose entries are known.
+    /// The dialog with a folder whose entries are known.
     #[cfg(test)]
     pub(crate) fn with(mut self, browser: Browser) -> Self {
         self.browser = browser.with_pictures();
@@ -90,7 +89,6 @@ impl OpenPainting {
         .into())
     }
 
-    /// Shows the dialog.
     pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
         let mut taken: Option<PathBuf> = None;
         let answer = dialog::show(context, tr!("Open a painting"), |ui| {

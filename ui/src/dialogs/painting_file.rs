@@ -1,4 +1,4 @@
-//! The painting's file: folder and name that dialogs propose by it, and what a command has done with it.
+//! The painting's file: folder and name for dialogs, and results of commands about it.
 
 use std::path::{Path, PathBuf};
 

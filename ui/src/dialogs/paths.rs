@@ -1,4 +1,4 @@
-//! File paths, as they are typed and as they are shown.
+//! File paths, as typed and as shown.
 
 use std::io::{Error, ErrorKind};
 use std::path::{Component, Path, PathBuf};
@@ -42,8 +42,7 @@ pub(crate) fn documents() -> PathBuf {
     own.filter(|folder| folder.is_dir()).unwrap_or_else(home)
 }
 
-/// The whole path of what was typed: `~` is the user's folder, and what does not begin at the root counts
-/// from there.
+/// The whole path of a typed one: `~` is the user's folder, and relative paths start there.
 #[must_use]
 pub(crate) fn whole(typed: &str) -> PathBuf {
     let typed = typed.trim();
@@ -88,17 +87,16 @@ pub(crate) fn name(path: &Path) -> String {
 /// The same path with this ending, unless it has it.
 #[must_use]
 pub(crate) fn ending_in(path: &Path, wanted: &str) -> PathBuf {
-    match ending(path) == wanted {
-        true => path.to_owned(),
-        false => {
-            let mut name = path.file_name().unwrap_or_default().to_os_string();
-            name.push(format!(".{wanted}"));
-            path.with_file_name(name)
-        }
+    if ending(path) == wanted {
+        path.to_owned()
+    } else {
+        let mut name = path.file_name().unwrap_or_default().to_os_string();
+        name.push(format!(".{wanted}"));
+        path.with_file_name(name)
     }
 }
 
-/// The first of `stem.ending`, `stem 2.ending`, … that is not there.
+/// The first unused name of `stem.ending`, `stem 2.ending`, ….
 #[must_use]
 pub(crate) fn free(folder: &Path, stem: &str, ending: &str) -> PathBuf {
     let named = |number: u32| match number {

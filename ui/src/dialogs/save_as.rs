@@ -1,4 +1,4 @@
-//! Dialog that moves the painting to another file and goes on there.
+//! Dialog that moves the painting to another file, where it continues.
 
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,7 @@ pub(crate) struct SaveAs {
 }
 
 impl SaveAs {
-    /// Begins with a name that is free, in `folder`; `stem` is what it begins with.
+    /// Begins with an unused name in `folder`, starting with `stem`.
     #[must_use]
     pub(crate) fn new(folder: &Path, stem: &str) -> Self {
         Self::at(paths::shown(&paths::free(folder, stem, paths::PAINTING)))
@@ -35,14 +35,14 @@ impl SaveAs {
         }
     }
 
-    /// The same with a folder whose entries are known.
+    /// The dialog with a folder whose entries are known.
     #[cfg(test)]
     pub(crate) fn with(mut self, browser: Browser) -> Self {
         self.browser = browser;
         self
     }
 
-    /// Takes in the rig's refusal.
+    /// Shows the rig's refusal.
     pub(crate) fn refused(&mut self, words: String) {
         self.wrong = Some(words);
     }
@@ -59,12 +59,11 @@ impl SaveAs {
         Ok(RigCommand::SaveAs(command::SaveAs { path, replace }).into())
     }
 
-    /// Shows the dialog.
     pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
         let mut taken = None;
         let answer = dialog::show(context, tr!("Save under another name"), |ui| {
             ui.weak(tr!(
-                "History and versions go along, and the painting goes on in the new file."
+                "History and versions are kept, and painting continues in the new file."
             ));
             ui.add_space(4.0);
             taken = self.browser.show(ui, tr!("File"));

@@ -1,5 +1,5 @@
-//! The line at the lower edge: name of the painting, and whether it is saved. It opens a menu of all file
-//! actions, for painters who do not know the keys. Before it stands the mark of a recording in progress.
+//! The line at the lower edge: name of the painting, and whether it is saved. It opens a menu of all file actions, for
+//! painters without the keys. The mark of a recording in progress stands before it.
 
 use std::path::Path;
 
@@ -33,19 +33,20 @@ const OFFERS: [Action; 6] = [
     Action::Reference,
 ];
 
-/// The line; empty where nothing is known of the painting.
+/// The line; empty while the painting is unknown.
 fn words(context: &Context, work: &PanelContext<'_>) -> String {
     let Some(node) = &work.rig.live.paint else {
         return String::new();
     };
     let status = &node.status;
     if status.path.is_empty() {
-        return match status.blank {
-            true => tr!("New painting").to_owned(),
-            false => match work.preferences.keys.written(context, Action::Save) {
+        return if status.blank {
+            tr!("New painting").to_owned()
+        } else {
+            match work.preferences.keys.written(context, Action::Save) {
                 key if key.is_empty() => tr!("In no file").to_owned(),
                 key => tr!("In no file · {key} keeps it", key),
-            },
+            }
         };
     }
     let since = work.rig.live.now_ns.saturating_sub(status.committed_ns);
@@ -65,7 +66,7 @@ fn words(context: &Context, work: &PanelContext<'_>) -> String {
     }
 }
 
-/// Shows the line; what was chosen under it.
+/// Shows the line; returns the choice from its menu.
 pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) -> Option<Action> {
     let words = words(context, work);
     if words.is_empty() && work.rig.recording.is_none() {
@@ -99,8 +100,8 @@ pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) -> Option<Act
     chosen
 }
 
-/// Greatest width of the line and its height over the window's edge, points: beside the bar, or over it where that
-/// leaves no room; `aside` is its distance from its side of the window.
+/// Greatest width of the line and its height over the window's edge, points: beside the bar, or over it where there is
+/// no room; `aside` is its distance from its side of the window.
 fn room(window: Rect, bar: Option<Rect>, aside: f32) -> (f32, f32) {
     let least_above = 4.0;
     let whole = window.width() - aside - 3.0 * MARGIN;
@@ -109,16 +110,17 @@ fn room(window: Rect, bar: Option<Rect>, aside: f32) -> (f32, f32) {
     };
     let nearer = (bar.left() - window.left()).min(window.right() - bar.right());
     let free = whole - bar.width() - nearer;
-    match free >= LEAST_WIDTH {
-        true => (free, least_above),
-        false => (
+    if free >= LEAST_WIDTH {
+        (free, least_above)
+    } else {
+        (
             whole.max(LEAST_WIDTH),
             window.bottom() - bar.top() + least_above,
-        ),
+        )
     }
 }
 
-/// The line with its menu; what was chosen there.
+/// The line with its menu; returns the choice.
 fn menu(ui: &mut Ui, words: &str, keymap: &Keymap) -> Option<Action> {
     let mut chosen = None;
     let button = Button::new(RichText::new(words).small())
@@ -158,9 +160,10 @@ mod tests {
             let window = Rect::from_min_max(Pos2::ZERO, pos2(width, 600.0));
             let (most, above) = room(window, Some(bar(left)), aside);
             assert!(most >= LEAST_WIDTH && most < width - aside);
-            let line = match left < 0.5 * width {
-                true => width - aside - most..width - aside,
-                false => aside..aside + most,
+            let line = if left < 0.5 * width {
+                width - aside - most..width - aside
+            } else {
+                aside..aside + most
             };
             let free = line.end <= left || line.start >= left + 300.0;
             assert_eq!(free, is_beside, "{line:?}");

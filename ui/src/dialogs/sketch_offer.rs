@@ -1,5 +1,5 @@
-//! The sketches of before, offered over a blank one: whoever closed the window on a painting without a name finds it
-//! again. The first paint takes the offer away.
+//! Earlier sketches, offered over a blank one, so that a painting without a name is found again after the window was
+//! closed. The first paint removes the offer.
 
 use std::path::PathBuf;
 use std::task::Poll;
@@ -15,7 +15,7 @@ use crate::dialogs::browser::pictures::Pictures;
 use crate::dialogs::paths;
 use crate::rig::state::RigState;
 
-/// So many are offered.
+/// Greatest number of offered sketches.
 const MOST_SKETCHES: usize = 4;
 /// Width of the offer, points.
 const WIDTH: f32 = 300.0;
@@ -23,24 +23,23 @@ const WIDTH: f32 = 300.0;
 /// Choice of the painter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Choice {
-    /// This one goes on.
     Open(PathBuf),
     /// All of them are to be seen.
     All,
 }
 
-/// What is there beside the sketch on the easel.
+/// Other sketches than the current one.
 #[derive(Debug, Default)]
 struct Found {
     newest: Vec<Sketch>,
     count: usize,
-    /// Those that go at the next start, once the painter was told.
+    /// Sketches that are removed at the next start, once the painter was informed.
     leaving: Vec<Sketch>,
 }
 
 #[derive(Debug, Default)]
 enum State {
-    /// The painting is not known yet.
+    /// The painting is unknown so far.
     #[default]
     Waiting,
     Looking(BackgroundTask<Found>),
@@ -53,7 +52,6 @@ enum State {
     Done,
 }
 
-/// The offer.
 #[derive(Debug, Default)]
 pub(super) struct SketchOffer {
     state: State,
@@ -192,7 +190,7 @@ mod tests {
     use crate::test_support::overlay_bench::{until, window_of};
     use crate::test_support::panel_bench;
 
-    /// A rig with a blank sketch on its easel, and so many others.
+    /// A rig with a blank sketch, and `others` others.
     fn rig(sketches: &Sketches, others: usize) -> RigState {
         let open = sketches.fresh("open").expect("free");
         for number in 0..others {

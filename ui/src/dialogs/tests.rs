@@ -49,7 +49,7 @@ fn a_new_painting_is_begun_by_keys_alone() {
         forget: false,
     });
     assert_eq!(asked, [(RIG.to_owned(), command)]);
-    // It is asked for once, however often Enter is pressed.
+    // It is requested once, however often Enter is pressed.
     press(&mut harness, Key::Enter);
     assert!(harness.state_mut().asked().is_empty());
     let refusal = UserError::usage("the disk is full").help("free some space");
@@ -199,7 +199,7 @@ fn saving_is_confirmed_and_what_is_in_no_file_gets_one() {
     ctrl(&mut harness, Key::S, gone());
     assert!(harness.query_by_label("Save under another name").is_none());
     assert!(harness.state().told().contains("Saved to"));
-    // Under another name, over a painting that is there.
+    // Under another name, over an existing painting.
     std::fs::write(&path, "").expect("written");
     ctrl(&mut harness, Key::S, Modifiers::SHIFT);
     write(&mut harness, "File", &text(&path));
@@ -287,7 +287,7 @@ fn a_file_that_is_dropped_becomes_what_it_is() {
     let_go(&mut harness, &[&painting, &painting]);
     harness.run_steps(2);
     assert!(harness.state().told().contains("drop one at a time"));
-    // What is in no file does not go for a dropped one.
+    // A painting in no file is not closed for a dropped one.
     let node = harness.state_mut().rig.live.paint.as_mut().expect("a node");
     node.status.blank = false;
     let_go(&mut harness, &[&painting]);

@@ -1,4 +1,4 @@
-//! The brush in the hand and its width, as rack, keys, panel and presets change them.
+//! The brush in the hand and its width, changed by rack, keys, panel and presets.
 
 mod presets;
 
@@ -28,10 +28,9 @@ const STEP: f64 = 0.15;
 /// Widths are whole numbers of these, mm.
 const GRAIN_MM: f64 = 0.5;
 
-/// A brush at another width, mm; one of the library from its own numbers, so that they do not drift.
+/// A brush at another width, mm; a library brush is scaled from its own numbers, so that they do not drift.
 ///
-/// # Errors
-/// As [`BrushFile::scaled_to`].
+/// # Errors As [`BrushFile::scaled_to`].
 pub(crate) fn resized(file: &BrushFile, width_mm: f64) -> Result<BrushFile, BrushError> {
     match of_library(&file.kind).filter(|_| is_of_library(file)) {
         Some(own) => own.scaled_to(width_mm),
@@ -39,13 +38,12 @@ pub(crate) fn resized(file: &BrushFile, width_mm: f64) -> Result<BrushFile, Brus
     }
 }
 
-/// Widths that a brush can have, mm: from its file's smallest to its largest size, where all that scales with them stays
-/// in range.
+/// Possible widths of a brush, mm: from its file's smallest to its largest size, where all scaled values stay in range.
 #[must_use]
 pub(crate) fn widths_mm(file: &BrushFile) -> RangeInclusive<f64> {
     let now = file.head.width_mm;
     let can = |width_mm: f64| file.scaled_to(width_mm).is_ok();
-    // As far as it can go toward an end, to a hundredth of the way.
+    // As far as possible toward an end, to a hundredth of the distance.
     let farthest = |end: f64| {
         if can(end) {
             return end;
@@ -53,9 +51,10 @@ pub(crate) fn widths_mm(file: &BrushFile) -> RangeInclusive<f64> {
         let (mut good, mut bad) = (now, end);
         for _ in 0..7 {
             let middle = (good * bad).sqrt();
-            match can(middle) {
-                true => good = middle,
-                false => bad = middle,
+            if can(middle) {
+                good = middle
+            } else {
+                bad = middle
             }
         }
         good
@@ -73,11 +72,12 @@ pub(crate) fn widths_mm(file: &BrushFile) -> RangeInclusive<f64> {
 pub(crate) fn next_width_mm(now_mm: f64, up: bool) -> f64 {
     let factor = if up { 1.0 + STEP } else { 1.0 - STEP };
     let wanted = (now_mm * factor / GRAIN_MM).round() * GRAIN_MM;
-    match up {
-        true => wanted.max(((now_mm + 1e-9) / GRAIN_MM).floor() * GRAIN_MM + GRAIN_MM),
-        false => wanted
+    if up {
+        wanted.max(((now_mm + 1e-9) / GRAIN_MM).floor() * GRAIN_MM + GRAIN_MM)
+    } else {
+        wanted
             .min(((now_mm - 1e-9) / GRAIN_MM).ceil() * GRAIN_MM - GRAIN_MM)
-            .max(GRAIN_MM),
+            .max(GRAIN_MM)
     }
 }
 
@@ -87,11 +87,12 @@ pub(crate) fn next_width_mm(now_mm: f64, up: bool) -> f64 {
 /// A [`UserError`] where it cannot be read or is no brush.
 pub(crate) fn read(path: &Path) -> Result<BrushFile, UserError> {
     let bytes = std::fs::read(path).map_err(|error| UserError::reading(path, &error))?;
-    let read = match matches!(&*ending(path), "glb" | "gltf") {
-        true => maulstick_brush::gltf::read(&bytes).map_err(|error| error.to_string()),
-        false => std::str::from_utf8(&bytes)
+    let read = if matches!(&*ending(path), "glb" | "gltf") {
+        maulstick_brush::gltf::read(&bytes).map_err(|error| error.to_string())
+    } else {
+        std::str::from_utf8(&bytes)
             .map_err(|_| tr!("this is no text").to_owned())
-            .and_then(|text| BrushFile::parse(text).map_err(|error| error.to_string())),
+            .and_then(|text| BrushFile::parse(text).map_err(|error| error.to_string()))
     };
     read.map_err(|what| {
         UserError::failure(what)
@@ -101,7 +102,7 @@ pub(crate) fn read(path: &Path) -> Result<BrushFile, UserError> {
 }
 
 impl RigBrush {
-    /// Its brush file, or the one that it is about to get.
+    /// Its brush file, or the requested one.
     #[must_use]
     pub(crate) fn wanted(&self) -> Option<&BrushFile> {
         let known = self.file.as_ref().map(|(file, _)| file);
@@ -116,7 +117,7 @@ impl PanelContext<'_> {
         self.rig.brush()?.wanted()
     }
 
-    /// True if the brush may be changed now. While the hand has it on a surface it stays as it is, which is said once.
+    /// True if the brush may be changed now. While it is on a surface it may not, which is notified once.
     pub(crate) fn may_change_brush(&mut self) -> bool {
         let is_lifted = self.rig.contact == BrushContact::Lifted;
         if !is_lifted {
@@ -125,7 +126,7 @@ impl PanelContext<'_> {
         is_lifted
     }
 
-    /// True if a request is refused, which is said once: it changes the brush while the hand has it on a surface.
+    /// True if a request is refused, with one notification: it would change the brush while it is on a surface.
     pub(crate) fn refuses(&mut self, request: &Request) -> bool {
         if self.rig.contact == BrushContact::Lifted || !request.changes_brush() {
             return false;
@@ -136,14 +137,14 @@ impl PanelContext<'_> {
         true
     }
 
-    /// Tells in the place of the last such sentence that the brush is not changed while it paints; the sentence.
+    /// Notifies that the brush is not changed while it paints, replacing the last such sentence; returns the sentence.
     fn tell_refusal(&mut self) -> &'static str {
         let words = tr!("The brush is painting: lift it, and ask again.");
         self.notifications.value("painting", words);
         words
     }
 
-    /// Gives the hand another brush; the brush already in the hand is not requested again.
+    /// Requests another brush for the hand; the present one is not requested again.
     pub(crate) fn take_up(&mut self, file: BrushFile) {
         if self.in_hand() == Some(&file) || !self.may_change_brush() {
             return;
@@ -198,7 +199,7 @@ impl PanelContext<'_> {
         }
     }
 
-    /// Takes in the outcome of a request: a brush that refused keeps its file; one that has the requested file runs the
+    /// Handles the outcome of a request: a brush that refused keeps its file; one with the requested file runs the
     /// command that waited for it.
     pub(crate) fn brush_answered(&mut self, outcome: &Outcome) {
         if let Request::Command { command, .. } = &outcome.request
@@ -229,8 +230,7 @@ impl PanelContext<'_> {
         }
     }
 
-    /// Ends a limit to the thickness of what the brush lays, the thinner of its next load, and how a preset presses and
-    /// tunes it.
+    /// Resets the limit of a brush's film, the thinner of its next load, and a preset's pressure and tuning.
     fn lay_full_paint(&mut self) {
         let handling = self.rig.handling();
         let is_limited = handling.most_m > 0.0;
@@ -286,8 +286,8 @@ impl PanelContext<'_> {
         }
     }
 
-    /// Takes a brush at the width that it was last used at, or at its own. What a preset made of the one before ends with
-    /// it: another brush lays full paint.
+    /// Takes a brush at its last width, or at its own. Settings of a preset end with its brush: another brush deposits
+    /// full paint.
     pub(crate) fn choose(&mut self, file: &BrushFile) {
         if !self.may_change_brush() {
             return;
@@ -298,7 +298,7 @@ impl PanelContext<'_> {
         self.take_up(scaled.unwrap_or_else(|| file.clone()));
     }
 
-    /// Makes the brush in the hand so wide, as far as it can be, mm.
+    /// Sets the width of the brush in hand, mm, within its range.
     pub(crate) fn widen(&mut self, width_mm: f64) {
         let Some(file) = self.in_hand() else {
             return;
@@ -321,9 +321,10 @@ impl PanelContext<'_> {
         let (now_mm, range) = (file.head.width_mm, widths_mm(file));
         let units = self.preferences.window.units;
         let next_mm = next_width_mm(now_mm, up);
-        let file = match range.contains(&next_mm) {
-            true => resized(file, next_mm).ok(),
-            false => None,
+        let file = if range.contains(&next_mm) {
+            resized(file, next_mm).ok()
+        } else {
+            None
         };
         match file {
             Some(file) => {
@@ -334,9 +335,10 @@ impl PanelContext<'_> {
             None => {
                 let kind = called(&file_kind(self));
                 let width = units.width(now_mm);
-                let words = match up {
-                    true => tr!("{kind} {width} is the widest", kind, width),
-                    false => tr!("{kind} {width} is the narrowest", kind, width),
+                let words = if up {
+                    tr!("{kind} {width} is the widest", kind, width)
+                } else {
+                    tr!("{kind} {width} is the narrowest", kind, width)
                 };
                 self.notifications.value("width", words);
             }

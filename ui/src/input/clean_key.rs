@@ -18,11 +18,10 @@ struct Down {
     before: Option<BrushHandling>,
 }
 
-/// The cleaning key.
 #[derive(Debug, Default)]
 pub(crate) struct CleanKey {
     down: Option<Down>,
-    /// What it asks for; in a stroke too.
+    /// Its requests, also within a stroke.
     requests: Requests,
 }
 
@@ -67,7 +66,7 @@ impl CleanKey {
         }
     }
 
-    /// Takes what it asks for.
+    /// Takes its requests.
     #[must_use]
     pub(crate) fn take(&mut self) -> Vec<Request> {
         self.requests.take()

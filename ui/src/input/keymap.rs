@@ -1,4 +1,4 @@
-//! The keys that the painter has chosen: the table of [`BINDINGS`], with changes that are kept in the preferences.
+//! The painter's keys: the table of [`BINDINGS`], with stored changes.
 
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 use maulstick_ui_kit::language::translated;
@@ -7,7 +7,7 @@ use toml::{Table, Value};
 
 use crate::input::keys::{Action, BINDINGS, Binding, written};
 
-/// Keys that cannot be given to an action, and what they do.
+/// Keys that cannot be assigned, and their functions.
 const FIXED: [(KeyboardShortcut, &str); 5] = [
     (
         KeyboardShortcut::new(Modifiers::NONE, Key::Escape),
@@ -31,7 +31,7 @@ const FIXED: [(KeyboardShortcut, &str); 5] = [
     ),
 ];
 
-/// What has a key now.
+/// Present function of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Holder {
     /// The binding at this place of the table.
@@ -59,7 +59,7 @@ impl Holder {
 pub struct Keymap {
     /// By the place in the table; `None` if another has taken it.
     keys: Vec<Option<KeyboardShortcut>>,
-    /// Entries of the file that name no known action or key, or one that is taken; they are written back.
+    /// Entries of the file with an unknown action or key, or one in use; they are written back.
     unknown: Table,
 }
 
@@ -135,7 +135,7 @@ impl Keymap {
         own.find_map(|(_, key)| key)
     }
 
-    /// The same as it is written; empty if there is none.
+    /// Text of the key; empty without one.
     #[must_use]
     pub(crate) fn written(&self, context: &Context, act: Action) -> String {
         let key = self.key_of(act);
@@ -147,13 +147,14 @@ impl Keymap {
     pub(crate) fn hint(&self, context: &Context, words: &str, acts: &[Action]) -> String {
         let keys = acts.iter().map(|act| self.written(context, *act));
         let keys: Vec<String> = keys.filter(|key| !key.is_empty()).collect();
-        match keys.is_empty() {
-            true => words.to_owned(),
-            false => format!("{words}  {}", keys.join(tr!(" and "))),
+        if keys.is_empty() {
+            words.to_owned()
+        } else {
+            format!("{words}  {}", keys.join(tr!(" and ")))
         }
     }
 
-    /// What else has a key than the binding at this place.
+    /// Other holder of a key than the binding at this place.
     #[must_use]
     pub(crate) fn holder(&self, place: usize, key: &KeyboardShortcut) -> Option<Holder> {
         let mut fixed = FIXED.iter();
@@ -165,7 +166,7 @@ impl Keymap {
         other.map(Holder::Binding)
     }
 
-    /// Gives the binding at a place this key, or none; who had it has none then.
+    /// Assigns a key, or none, to the binding at a place; its earlier holder loses it.
     pub(crate) fn set(&mut self, place: usize, key: Option<KeyboardShortcut>) {
         for own in &mut self.keys {
             if *own == key {
@@ -184,7 +185,7 @@ impl Keymap {
         self.key(place) != usual
     }
 
-    /// One sentence of what the file names that is not known; `None` if all is known.
+    /// A sentence about unknown entries of the file; `None` without any.
     #[must_use]
     pub(crate) fn fault(&self) -> Option<String> {
         let entries = self.unknown.iter();
@@ -193,7 +194,7 @@ impl Keymap {
             .collect();
         (!entries.is_empty()).then(|| {
             tr!(
-                "The preferences have keys that are not known, or named twice: {entries}",
+                "The preferences have keys that are unknown or used twice: {entries}",
                 entries = entries.join(", ").replace('\n', " ")
             )
         })

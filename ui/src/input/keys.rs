@@ -8,9 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Action {
-    /// A new painting.
     New,
-    /// Another painting.
     Open,
     /// Save, and confirm that all is saved.
     Save,
@@ -20,7 +18,6 @@ pub(crate) enum Action {
     Export,
     /// Record the session, or end that.
     Record,
-    /// Play a recording.
     Play,
     /// Choose a motion, and put it on the canvas.
     Motions,
@@ -34,9 +31,7 @@ pub(crate) enum Action {
     Undo,
     /// The newest undo back.
     Redo,
-    /// A smaller brush.
     Smaller,
-    /// A larger brush.
     Larger,
     /// The next brush of the rack.
     NextBrush,
@@ -48,7 +43,7 @@ pub(crate) enum Action {
     TurnLeft,
     /// The mouse's brush turned to the right.
     TurnRight,
-    /// The mouse's brush across its stroke, or as it is turned.
+    /// The mouse's brush across its stroke, or at its own rotation.
     Follow,
     /// The mouse presses lighter.
     Lighter,
@@ -68,17 +63,13 @@ pub(crate) enum Action {
     Mirror,
     /// The keyboard goes to the panels.
     Focus,
-    /// The whole screen.
     FullScreen,
     /// The whole screen with neither panels, rack nor bar, and back.
     Alone,
-    /// Show the keys.
     Keys,
     /// Show the steps of a first painting.
     Tutorial,
-    /// Show what program this is.
     About,
-    /// Close the window.
     Quit,
     /// No device gives force any more.
     ForceOff,
@@ -101,7 +92,7 @@ impl Action {
         matches!(self, Self::Clean | Self::Size | Self::Zoom)
     }
 
-    /// True for an action whose effect adds up: it acts again while its key is kept down.
+    /// True for a cumulative action, which repeats while its key is held.
     #[must_use]
     pub(crate) fn repeats(self) -> bool {
         matches!(
@@ -121,9 +112,7 @@ impl Action {
 /// A key and what it does.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Binding {
-    /// Its action.
     pub act: Action,
-    /// The key.
     pub shortcut: KeyboardShortcut,
     /// Its description in a painter's words.
     pub words: &'static str,
@@ -191,7 +180,7 @@ pub(crate) const BINDINGS: [Binding; 44] = bindings! {
     Zoom [] Z "Held, and drag: zoom",
 };
 
-/// What the pointer does with something held, and its description.
+/// Functions of the pointer with a held key, with descriptions.
 pub(crate) const HELD: [(&str, &str); 6] = [
     ("Shift and drag", "Paint a straight stroke"),
     ("Wheel", "Zoom"),
@@ -207,7 +196,7 @@ pub(crate) const HELD: [(&str, &str); 6] = [
     ),
 ];
 
-/// A key as it is written: signs as themselves.
+/// Text of a key, with signs as themselves.
 #[must_use]
 pub(crate) fn written(context: &Context, shortcut: &KeyboardShortcut) -> String {
     let text = context.format_shortcut(shortcut);

@@ -1,9 +1,9 @@
-//! Keys, mouse and gestures, and what they ask for.
+//! Keys, mouse and gestures, and their requests.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`keys`] | actions and their usual keys |
-//! | [`keymap`] | the keys that the painter has chosen |
+//! | [`keys`] | actions and their default keys |
+//! | [`keymap`] | the painter's keys |
 //! | [`presses`] | presses of keys |
 //! | [`pointer_path`] | path of the pointer, and where its button presses the brush |
 //! | [`ruler`] | straight strokes |

@@ -47,7 +47,6 @@ struct Drag {
 /// Surroundings of the pointer.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Around<'a> {
-    /// The view.
     pub view: &'a View,
     /// The surfaces with their placements.
     pub surfaces: &'a [Surface],
@@ -55,17 +54,15 @@ pub(crate) struct Around<'a> {
     pub free: bool,
     /// True while the pointer is over a panel.
     pub over_panel: bool,
-    /// The keys.
     pub keys: &'a Keymap,
 }
 
-/// The free hand.
 #[derive(Debug, Default)]
 pub(crate) struct Navigation {
     drag: Option<Drag>,
-    /// The surface that was last sent, its placement, and the time; the scene follows.
+    /// Last sent surface, placement and time; the scene follows later.
     sent: Option<(u32, SurfacePlacement, f64)>,
-    /// What it asks for; in a stroke too.
+    /// Its requests, also within a stroke.
     requests: Requests,
 }
 
@@ -79,7 +76,7 @@ impl Navigation {
         self.drag.is_some()
     }
 
-    /// Follows the input of a frame; asks for what it does.
+    /// Handles the input of a frame; adds its requests.
     pub(crate) fn follow(&mut self, input: &InputState, around: &Around<'_>) {
         if let Some(touch) = input.multi_touch() {
             self.drag = None;
@@ -124,7 +121,7 @@ impl Navigation {
         }
     }
 
-    /// Takes what it asks for.
+    /// Takes its requests.
     #[must_use]
     pub(crate) fn take(&mut self) -> Vec<Request> {
         self.requests.take()

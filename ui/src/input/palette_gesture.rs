@@ -1,5 +1,4 @@
-//! The palette gesture: a wave of the brush beyond the side where the palette rests fetches it, as the space
-//! bar does.
+//! The palette gesture: a wave of the brush beyond the palette's side brings it, like the space bar.
 
 use glam::DVec2;
 use maulstick_brush::palette_place::Side;
@@ -19,7 +18,7 @@ pub(crate) struct PaletteGesture {
 }
 
 impl PaletteGesture {
-    /// Follows the brush: `at` in the view's shares of its width and height from the middle (−½ to ½ is in view),
+    /// Tracks the brush: `at` in the view's shares of its width and height from the middle (−½ to ½ is in view),
     /// `None` without a brush; `wide_m` the view's width; `in_air` if it touches nothing.
     pub(crate) fn follow(
         &mut self,

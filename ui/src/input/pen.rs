@@ -1,4 +1,4 @@
-//! The pen over the window: what it finds there, and what of its pointer the window has.
+//! The pen over the window: its target, and the part of its pointer that the window gets.
 
 use std::sync::Arc;
 
@@ -24,7 +24,8 @@ use crate::panels::device;
 use crate::settings::preferences::Preferences;
 use crate::view::camera::View;
 
-/// The pointer that a pen has moved is still its own so long after it has left, ns: the window hears of the two apart.
+/// Time after a pen's departure during which the pointer is still its own, ns: the window receives the two events
+/// separately.
 const LINGERS_NS: u64 = 200_000_000;
 
 /// The desk as the window shows it.
@@ -132,12 +133,12 @@ impl WindowPen {
         self.thread = None;
     }
 
-    /// Makes pens pointers, or brushes.
+    /// Makes pens act as pointers, or as brushes.
     pub(crate) fn set_pointing(&mut self, is_pointing: bool) {
         self.is_pointing = is_pointing;
     }
 
-    /// Sets what the window shows of the desk, and the brush in the hand.
+    /// Sets the displayed desk, and the brush in the hand.
     pub(crate) fn show(
         &self,
         context: &Context,
@@ -153,9 +154,10 @@ impl WindowPen {
             let modifiers = input.modifiers;
             (modifiers.is_none() || modifiers.shift_only()) && !held && !self.is_pointing
         });
-        let per_point = match self.state.moves_no_pointer {
-            true => context.zoom_factor(),
-            false => context.pixels_per_point(),
+        let per_point = if self.state.moves_no_pointer {
+            context.zoom_factor()
+        } else {
+            context.pixels_per_point()
         };
         let view = view.map(|(view, surfaces)| -> Arc<dyn DeskView> {
             Arc::new(ShownDesk {
@@ -181,7 +183,7 @@ impl WindowPen {
         }
     }
 
-    /// Tells once what pens sense.
+    /// Notifies once of the pens' senses.
     pub(crate) fn greet(&self, preferences: &mut Preferences, notifications: &mut Notifications) {
         let senses = self.state.senses;
         if senses & !preferences.pen_senses != 0 {
@@ -191,15 +193,15 @@ impl WindowPen {
         }
     }
 
-    /// True while the pointer is a pen's: on the desk it does nothing then.
+    /// True while the pointer is a pen's, when it does nothing on the desk.
     #[must_use]
     pub(crate) fn has_pointer(&self, now_ns: u64) -> bool {
         let state = &self.state;
         state.is_near || state.near_ns > 0 && now_ns < state.near_ns + LINGERS_NS
     }
 
-    /// Takes in what pens did: where the window system moves no pointer with them, this does, and while one is near no
-    /// finger counts, for it is a palm.
+    /// Handles events of pens: where the window system moves no pointer with them, this does, and while one is near
+    /// fingers are ignored as palms.
     pub(crate) fn take_in(&mut self, context: &Context, input: &mut RawInput) {
         self.state = self.link.state();
         if self.state.is_near {
@@ -228,8 +230,8 @@ impl WindowPen {
     }
 }
 
-/// Takes fingers out of events that come down or move, with the pointer that the first of them moves. What lifts stays: a
-/// palm may have come before the pen.
+/// Removes fingers that come down or move from the events, with the pointer of the first. Lifts stay: a palm may have
+/// come before the pen.
 fn refuse_palms(events: &mut Vec<Event>) {
     let mut finger = None;
     events.retain(|event| match event {
@@ -286,7 +288,7 @@ mod tests {
         ];
         refuse_palms(&mut events);
         assert_eq!(events, [mouse, key]);
-        // One that lay there before the pen came is lifted, and a mouse's button, too.
+        // A finger present before the pen is lifted, and a mouse's button, too.
         let lifted = |phase| Event::Touch {
             device_id: TouchDeviceId(1),
             id: TouchId(1),

@@ -29,8 +29,8 @@ impl PointerPath {
     }
 
     /// The places of a frame, in order; `on_desk` is true of a point of the window where the desk is not covered. Each
-    /// press counts where it falls: a frame may hold one on the desk and a way from there that ends over a panel. A
-    /// stroke that has begun goes on over panels, and ends where the button is let go.
+    /// press counts at its own place: a frame may contain one on the desk and a path from there that ends over a panel.
+    /// A stroke continues over panels, and ends where the button is released.
     pub(crate) fn follow(
         &mut self,
         input: &InputState,
@@ -87,7 +87,7 @@ mod tests {
 
     use super::*;
 
-    /// The panel lies to the right of this.
+    /// Left edge of the panel.
     const PANEL: f32 = 500.0;
 
     fn on_desk(at: Pos2) -> bool {

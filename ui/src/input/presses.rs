@@ -1,4 +1,4 @@
-//! Presses of keys: the actions that they ask for, and who has the keyboard.
+//! Presses of keys: their actions, and the owner of the keyboard.
 
 use eframe::egui::{
     Context, Event, InputState, Key, KeyboardShortcut, Modifiers, Plugin, RawInput, TextEdit,
@@ -7,7 +7,7 @@ use eframe::egui::{
 use crate::input::keymap::Keymap;
 use crate::input::keys::Action;
 
-/// Tab by itself: it also moves the focus from control to control.
+/// Tab alone, which also moves the focus from control to control.
 const TAB: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::Tab);
 
 /// True while the key of an action that lasts is down.
@@ -17,8 +17,8 @@ pub(crate) fn is_down(input: &InputState, keymap: &Keymap, act: Action) -> bool 
     key.is_some_and(|key| input.key_down(key.logical_key))
 }
 
-/// The action of a key that is held by itself as a button is pressed, which makes something else of a drag than a
-/// stroke. `place` is that of the button's event: a slow frame may hold key, drag and the key's release together.
+/// The action of a single key held at the press of a button, which turns a drag into another function than a stroke.
+/// `place` is that of the button's event: a slow frame may contain key, drag and the key's release together.
 #[must_use]
 pub(crate) fn holds(input: &InputState, keymap: &Keymap, place: usize) -> Option<Action> {
     let Some(Event::PointerButton { modifiers, .. }) = input.events.get(place) else {
@@ -84,7 +84,7 @@ pub(crate) fn closes_table(input: &mut InputState, keymap: &Keymap) -> bool {
     closes
 }
 
-/// Gives the keyboard back to the desk after a click on a control in which nothing is typed.
+/// Returns the keyboard to the desk after a click on a control without typing.
 pub(crate) fn return_keyboard(context: &Context) {
     let clicked = context.input(|input| input.pointer.any_released());
     let focused = context.memory(|memory| memory.focused());
@@ -102,7 +102,7 @@ fn is_plain(key: &KeyboardShortcut) -> bool {
     !key.modifiers.command && !is_function
 }
 
-/// The one key that acts whatever else is open.
+/// The one key that acts in all states of the window.
 #[must_use]
 pub(crate) fn force_off(context: &Context, keymap: &Keymap) -> Vec<Action> {
     let key = keymap.key_of(Action::ForceOff).filter(|key| !is_plain(key));
@@ -140,7 +140,7 @@ pub(crate) fn pressed(context: &Context, keymap: &Keymap) -> Vec<Action> {
                 modifiers: own,
                 logical_key,
             } = *shortcut;
-            // A key that is kept down acts once, except those whose effect adds up.
+            // A held key acts once, except cumulative actions.
             if !typing && !act.repeats() {
                 input.events.retain(|event| {
                     !matches!(event, Event::Key { key, repeat: true, modifiers, .. }

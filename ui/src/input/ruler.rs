@@ -1,21 +1,21 @@
-//! Straight strokes: one that begins while Shift is held goes along a ruler, from its first place in the direction in
-//! which it sets out.
+//! Straight strokes: one that begins while Shift is held follows a ruler, from its first place in its initial
+//! direction.
 
 use eframe::egui::{Pos2, Vec2};
 
-/// Way after which the direction is known, points: of a shorter one the direction is mostly the shaking of the hand.
+/// Distance after which the direction is known, points: that of a shorter one is mostly the shaking of the hand.
 const KNOWN: f32 = 20.0;
 
 /// The ruler under a stroke.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Ruler {
     from: Option<Pos2>,
-    /// A unit vector, once the direction is known.
+    /// Unit vector, once the direction is known.
     along: Option<Vec2>,
 }
 
 impl Ruler {
-    /// Lays it at the first place of a stroke.
+    /// Places it at the first place of a stroke.
     pub(crate) fn lay(&mut self, from: Pos2) {
         *self = Self {
             from: Some(from),
@@ -28,8 +28,8 @@ impl Ruler {
         *self = Self::default();
     }
 
-    /// The place on its edge that is nearest to this one; the place itself where no ruler lies. Until the direction is
-    /// known that is the first place.
+    /// The nearest place on its edge; without a ruler the place itself. Until the direction is known that is the first
+    /// place.
     pub(crate) fn nearest(&mut self, at: Pos2) -> Pos2 {
         let Some(from) = self.from else {
             return at;

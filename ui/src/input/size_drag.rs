@@ -13,7 +13,7 @@ use crate::input::presses;
 use crate::settings::brush_library::called;
 use crate::widgets::context::PanelContext;
 
-/// The pointer goes so far for a brush that is e times as wide, points.
+/// Distance of a drag that multiplies the brush's width by e, points.
 const FAR: f32 = 160.0;
 
 /// A drag in progress.
@@ -23,7 +23,6 @@ struct Drag {
     from_mm: f64,
 }
 
-/// The drag.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SizeDrag {
     drag: Option<Drag>,
@@ -104,7 +103,7 @@ mod tests {
     use crate::settings::brush_library::of_library;
     use crate::test_support::overlay_bench::window;
 
-    /// Widths asked for by a drag so far to the right, points, with S held or not.
+    /// Widths requested by a drag to the right, points, with S held or not.
     fn dragged(by: f32, held: bool) -> Vec<f64> {
         let mut harness = window(None);
         let file = of_library("round").expect("round").clone();

@@ -2,7 +2,7 @@
 //!
 //! | module | content |
 //! | --- | --- |
-//! | `sources` | the sentences of the sources, and what each language has of them |
+//! | `sources` | the sentences of the sources, and their translations |
 //! | `shown` | the window in each language |
 
 mod shown;

@@ -49,7 +49,7 @@ fn studio() -> RigState {
     };
     studio.live.paint = Some(paint);
     let mut named = devices();
-    // Its daemon words its driver and its trouble.
+    // Its daemon supplies the words of its driver and its trouble.
     named.live.devices.remove("tablet");
     (studio.live.devices, studio.live.now_ns) = (named.live.devices, named.live.now_ns);
     studio.brushes.truncate(1);
@@ -101,7 +101,7 @@ fn read(harness: &Harness<'_, Bench>) -> Vec<String> {
     said.filter(|said| said != "Close window").collect()
 }
 
-/// Texts with their places, as far as they are seen.
+/// Visible texts with their places.
 fn texts(harness: &Harness<'_, Bench>) -> Vec<(String, Rect, Rect, bool)> {
     fn collect(shape: &Shape, clip: Rect, found: &mut Vec<(String, Rect, Rect, bool)>) {
         match shape {
@@ -126,7 +126,7 @@ fn texts(harness: &Harness<'_, Bench>) -> Vec<(String, Rect, Rect, bool)> {
     found
 }
 
-/// English words, and texts that are cut off or lie over each other.
+/// English words, and texts that are clipped or overlap.
 fn faults(harness: &Harness<'_, Bench>, language: &Language, may_overlap: bool) -> Vec<String> {
     let english = english_words(language);
     let mut faults = Vec::new();
@@ -161,7 +161,7 @@ fn faults(harness: &Harness<'_, Bench>, language: &Language, may_overlap: bool) 
     faults
 }
 
-/// Saves a picture where somebody wants to look at it.
+/// Saves a picture for inspection, if requested.
 fn look(harness: &mut Harness<'_, Bench>, code: &str, name: &str) {
     if let Some(place) = std::env::var_os("MAULSTICK_LOOK") {
         let image = harness.render().expect("a picture");

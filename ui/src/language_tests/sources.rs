@@ -98,7 +98,7 @@ fn sources(folder: &Path, found: &mut BTreeMap<String, String>) {
     }
 }
 
-/// The text of a literal that begins behind its quote, and what follows it.
+/// The text of a literal that begins behind its quote, and the code after it.
 fn literal(code: &str) -> (String, &str) {
     let mut text = String::new();
     let mut letters = code.char_indices();
@@ -233,7 +233,7 @@ fn needed() -> BTreeSet<String> {
         .collect()
 }
 
-/// What a language lacks, and what it has and nobody needs.
+/// Missing and superfluous sentences of a language.
 fn gaps(language: &Language, needed: &BTreeSet<String>) -> Vec<String> {
     // Words that are the same in many languages.
     let keys = Key::ALL.iter().map(|key| format!("key|{}", key.name()));
@@ -328,7 +328,7 @@ fn each_use_fills_the_places_of_its_sentence() {
 fn no_control_shows_a_sentence_that_is_not_translated() {
     let found = all_sources();
     let bare = |code: &str| -> Vec<String> {
-        // Calls that show a literal as it is.
+        // Calls that show a literal unchanged.
         let calls = [
             ".label(\"",
             ".weak(\"",

@@ -45,7 +45,8 @@ pub(super) fn show(ui: &mut Ui, colour: &mut Hsva) -> bool {
     *colour != before
 }
 
-/// A field of colours with a mark at a point, 0 to 1 each way from the upper left corner; the point where the mark was put.
+/// A field of colours with a mark at a point, 0 to 1 each way from the upper left corner; returns the point where the
+/// mark was put.
 fn field(
     ui: &mut Ui,
     size: Vec2,

@@ -1,4 +1,4 @@
-//! A colour that the painter has in mind, chosen in a square or written as hex, and the mixtures that come near it.
+//! A colour of the painter's choice, from a square or as hex, and nearby mixtures.
 
 use std::sync::Arc;
 
@@ -18,7 +18,6 @@ const WIDTH: f32 = 240.0;
 /// Distance from the rack and from the upper edge when it opens, points.
 const ASIDE: f32 = 40.0;
 
-/// The window.
 #[derive(Debug)]
 pub(crate) struct ColourWindow {
     shown: bool,
@@ -72,9 +71,10 @@ impl ColourWindow {
         if !self.shown {
             return;
         }
-        let (corner, inward) = match work.preferences.window.left_handed {
-            false => (Align2::RIGHT_TOP, -1.0),
-            true => (Align2::LEFT_TOP, 1.0),
+        let (corner, inward) = if work.preferences.window.left_handed {
+            (Align2::LEFT_TOP, 1.0)
+        } else {
+            (Align2::RIGHT_TOP, -1.0)
         };
         let at = corner.pos_in_rect(&context.content_rect());
         let side = sides::rack_side(work.preferences);
@@ -149,9 +149,10 @@ impl ColourWindow {
         let all = &mut work.preferences.reference.all_paints;
         ui.checkbox(all, tr!("All paints"))
             .on_hover_text(tr!("Not only those on the palette"));
-        let paints = match *all {
-            true => None,
-            false => of_palette(work.rig.live.palette()),
+        let paints = if *all {
+            None
+        } else {
+            of_palette(work.rig.live.palette())
         };
         let is_dragged = ui.ctx().egui_is_using_pointer();
         if let Some(scene) = work.rig.live.scene.as_ref().filter(|_| !is_dragged) {

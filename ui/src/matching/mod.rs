@@ -2,10 +2,10 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`picker`] | the search for mixtures that come near a colour |
-//! | [`proposals`] | rows of what was found |
+//! | [`picker`] | the search for mixtures near a colour |
+//! | [`proposals`] | rows of results |
 //! | [`colour_square`] | choice of a colour by hue, saturation and brightness |
-//! | [`colour_window`] | a colour that the painter has in mind |
+//! | [`colour_window`] | a colour of the painter's choice |
 
 mod colour_square;
 pub(crate) mod colour_window;

@@ -31,7 +31,6 @@ pub(crate) struct Ask {
 /// A mixture near the colour.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Match {
-    /// The mixture.
     pub mixture: Mixture,
     /// Its difference from the colour, ΔE₀₀.
     pub delta_e: f64,
@@ -131,7 +130,6 @@ pub(crate) fn search(ask: &Ask, library: &PaintLibrary) -> Matches {
     Ok(all.into_iter().map(shown).collect())
 }
 
-/// The searches requested.
 #[derive(Debug, Default)]
 pub(crate) struct Picker {
     asked: Option<Ask>,
@@ -147,7 +145,6 @@ impl Picker {
         }
     }
 
-    /// Forgets the request.
     pub(crate) fn forget(&mut self) {
         (self.asked, self.found) = (None, None);
     }
@@ -229,7 +226,7 @@ mod tests {
             found[0].delta_e < 2.0 && far(found[0].rgb) < 12,
             "{found:?}"
         );
-        // Without the light's strength it would look darker than what was picked.
+        // Without the light's strength it would look darker than the picked colour.
         let mut bright = ask.clone();
         bright.light.exposure = 1.0;
         bright.light.intensity = 0.8;

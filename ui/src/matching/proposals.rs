@@ -1,4 +1,4 @@
-//! Rows of proposed mixtures: how far off each is, and what can be done with it.
+//! Rows of proposed mixtures: the distance of each, and its actions.
 
 use eframe::egui::{self, Color32, Role, Sense, StrokeKind, Ui, WidgetInfo, vec2};
 
@@ -6,7 +6,7 @@ use crate::matching::picker::{Match, Matches};
 use crate::panels::desk_edits;
 use crate::widgets::context::PanelContext;
 
-/// Shows what a search has found; a spinner while it runs.
+/// Shows the results of a search; a spinner while it runs.
 pub(crate) fn matches(ui: &mut Ui, found: Option<&Matches>, work: &mut PanelContext<'_>) {
     match found {
         None => {
@@ -76,7 +76,7 @@ fn in_parts(found: &Match) -> String {
     parts.join(", ")
 }
 
-/// A colour, encoded sRGB, as it is written on the web.
+/// A colour, encoded sRGB, in the web's notation.
 #[must_use]
 pub(crate) fn hex([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")

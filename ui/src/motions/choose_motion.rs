@@ -21,7 +21,6 @@ const HEIGHT: f32 = 280.0;
 const PICTURE: Vec2 = vec2(92.0, 92.0);
 const LINE: f32 = 18.0;
 
-/// The dialog.
 #[derive(Debug)]
 pub(crate) struct ChooseMotion {
     folder: String,
@@ -30,12 +29,11 @@ pub(crate) struct ChooseMotion {
     wrong: Option<String>,
 }
 
-/// What the dialog has come to in a frame.
+/// Result of the dialog in a frame.
 #[derive(Debug, Default)]
 pub(crate) struct Chosen {
     /// True if it closes.
     pub closes: bool,
-    /// The motion that is to be put down.
     pub chosen: Option<Motion>,
 }
 
@@ -53,7 +51,6 @@ impl ChooseMotion {
         }
     }
 
-    /// Shows it.
     pub(crate) fn show(&mut self, context: &Context, work: &mut PanelContext<'_>) -> Chosen {
         let folder = paths::whole(&self.folder);
         let library = match self.library.take() {

@@ -20,7 +20,6 @@ const LARGEST: u64 = 32 << 20;
 /// A take that can be put down.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Motion {
-    /// Its file.
     pub path: PathBuf,
     /// Its strokes.
     pub drawn: DrawnPaths,
@@ -28,21 +27,19 @@ pub(crate) struct Motion {
     pub seconds: f64,
 }
 
-/// What is known of a file.
+/// State of a file, as far as it was read.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Known {
     /// It is to be read, or is being read.
     Coming,
     /// It is no take that paints.
     Unusable,
-    /// It is here.
     Here(Motion),
 }
 
 /// The takes of a folder.
 #[derive(Debug)]
 pub(crate) struct Library {
-    /// The folder.
     pub folder: PathBuf,
     /// Length of the head that a 6-DOF stylus holds, m.
     head_m: f64,

@@ -31,7 +31,6 @@ pub(crate) struct Motions {
 }
 
 impl Motions {
-    /// Opens the dialog.
     pub(crate) fn open(&mut self, work: &mut PanelContext<'_>) {
         if work.rig.replay.is_some() {
             work.notifications.fault(

@@ -270,9 +270,10 @@ fn escape_or_the_other_button_lets_it_go() {
         harness.event(Event::PointerMoved(pos2(300.0, 200.0)));
         harness.run_steps(1);
         assert!(harness.state().motions.is_placing());
-        match key {
-            true => harness.key_press(Key::Escape),
-            false => harness.event(button(pos2(300.0, 200.0), PointerButton::Secondary)),
+        if key {
+            harness.key_press(Key::Escape)
+        } else {
+            harness.event(button(pos2(300.0, 200.0), PointerButton::Secondary))
         }
         harness.run_steps(2);
         let desk = harness.state_mut();

@@ -16,7 +16,6 @@ use eframe::egui::Ui;
 
 use crate::widgets::context::PanelContext;
 
-/// A panel.
 pub(crate) trait Panel {
     /// Title of the panel.
     fn title(&self) -> &'static str;

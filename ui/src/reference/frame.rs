@@ -15,7 +15,7 @@ const ASIDE: f32 = 8.0;
 pub(super) struct PictureFrame {
     /// True once it has its place.
     is_placed: bool,
-    /// Where it was when a button of the pointer went down.
+    /// Its rectangle when a button of the pointer was pressed.
     held: Option<Rect>,
 }
 
@@ -56,8 +56,8 @@ impl PictureFrame {
     }
 }
 
-/// Where a window of this size opens that was last at `place`: within the room, and beside the palette where it would
-/// cover it.
+/// Position at which a window of this size opens that was last at `place`: within the room, and beside the palette if
+/// it would cover it.
 fn opening(place: Pos2, size: Vec2, palette: Option<Rect>, room: Rect) -> Pos2 {
     let last = (room.max - size).max(room.min);
     let place = place.clamp(room.min, last);
@@ -69,9 +69,10 @@ fn opening(place: Pos2, size: Vec2, palette: Option<Rect>, room: Rect) -> Pos2 {
     };
     let right = palette.right() + ASIDE;
     let left = palette.left() - ASIDE - size.x;
-    let x = match right <= last.x || left < room.left() {
-        true => right.min(last.x),
-        false => left,
+    let x = if right <= last.x || left < room.left() {
+        right.min(last.x)
+    } else {
+        left
     };
     pos2(x, place.y)
 }

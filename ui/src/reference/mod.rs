@@ -34,7 +34,7 @@ use settings::FrameOpacity;
 
 /// The least size of the frame, points.
 const LEAST: [f32; 2] = [220.0, 180.0];
-/// The picture is magnified at most so far beyond a pixel a point.
+/// Largest magnification of the picture, pixels of the screen for one of the picture.
 const CLOSEST: f32 = 16.0;
 /// The least height of the picture while mixtures are below it, points.
 const LEAST_PICTURE: f32 = 60.0;
@@ -62,7 +62,6 @@ impl Default for Look {
     }
 }
 
-/// The reference picture.
 #[derive(Debug, Default)]
 pub(crate) struct Reference {
     sliders: Sliders,
@@ -295,9 +294,10 @@ impl Reference {
             pixel(cross.y, picture.size[1]),
         ]);
         self.picked = Some(linear);
-        let paints = match work.preferences.reference.all_paints {
-            true => None,
-            false => of_palette(work.rig.live.palette()),
+        let paints = if work.preferences.reference.all_paints {
+            None
+        } else {
+            of_palette(work.rig.live.palette())
         };
         self.picker.ask(Ask {
             linear,

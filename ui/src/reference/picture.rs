@@ -120,7 +120,6 @@ pub(crate) fn unread(error: &ImportError) -> String {
 /// A pinned picture while it loads.
 #[derive(Default)]
 pub(crate) enum Pinned {
-    /// No picture.
     #[default]
     Nothing,
     /// It is being read.

@@ -20,7 +20,6 @@ quantity! {
 pub struct ReferencePreferences {
     /// True while it is shown.
     pub shown: bool,
-    /// The picture.
     pub path: Option<PathBuf>,
     /// Position of its frame, points from the window's upper left corner.
     pub place: [f32; 2],
@@ -48,9 +47,12 @@ impl Default for ReferencePreferences {
 impl ReferencePreferences {
     /// The same with numbers that make a frame.
     pub(super) fn sound(&self) -> Self {
-        let within = |value: f32, least: f32, most: f32, usual: f32| match value.is_finite() {
-            true => value.clamp(least, most),
-            false => usual,
+        let within = |value: f32, least: f32, most: f32, usual: f32| {
+            if value.is_finite() {
+                value.clamp(least, most)
+            } else {
+                usual
+            }
         };
         let usual = Self::default();
         Self {

@@ -31,7 +31,7 @@ impl DeviceLoss {
         }
     }
 
-    /// Follows `device`, and draws the window of `context` anew when it is lost.
+    /// Watches `device`, and has the window of `context` drawn again when it is lost.
     pub fn follow(&self, device: &wgpu::Device, context: &Context) {
         let (lost, context) = (self.clone(), context.clone());
         device.set_device_lost_callback(move |reason, words| {
@@ -45,9 +45,10 @@ impl DeviceLoss {
 
     fn lose(&self, words: &str) {
         let words = words.trim();
-        let mut why = match words.is_empty() {
-            true => "its driver does not say why".to_owned(),
-            false => words.to_owned(),
+        let mut why = if words.is_empty() {
+            "its driver gives no reason".to_owned()
+        } else {
+            words.to_owned()
         };
         why.truncate(why.floor_char_boundary(LONGEST));
         if let Err(error) = std::fs::write(&self.word, &why) {

@@ -21,7 +21,6 @@ const ASK: Duration = Duration::from_millis(1);
 pub(crate) struct Holding {
     /// The journal entries below this index.
     pub journal: u64,
-    /// The brush states.
     pub holds: Vec<FrameHolds>,
 }
 
@@ -91,7 +90,9 @@ impl Presenter {
             .name("presented".into())
             .spawn(run);
         let thread = thread
-            .inspect_err(|error| tracing::error!("no thread that tells of frames: {error}"))
+            .inspect_err(|error| {
+                tracing::error!("the thread of frame reports cannot be started: {error}")
+            })
             .ok();
         Ok(Self {
             bus,
@@ -206,7 +207,7 @@ fn tell(line: &Line, mut sender: Sender<Presented>, bus: &dyn Bus, ask: &dyn Fn(
             drop(state);
             for (completed_ns, presented) in completed {
                 if let Err(error) = sender.send(bus.now_ns(), completed_ns, &presented) {
-                    tracing::debug!("a frame is not told: {error}");
+                    tracing::debug!("a frame cannot be reported: {error}");
                 }
             }
             state = line.state();

@@ -161,11 +161,8 @@ pub struct Pass<'a> {
     pub name: &'a str,
     /// The one bind group.
     pub layout: &'a wgpu::BindGroupLayout,
-    /// The shader.
     pub shader: &'a wgpu::ShaderModule,
-    /// Its vertex stage.
     pub vertex: &'a str,
-    /// Its fragment stage.
     pub fragment: &'a str,
     /// Its overridable constants.
     pub constants: &'a [(&'a str, f64)],
@@ -204,7 +201,6 @@ pub(crate) const CUBE: wgpu::BindingType = wgpu::BindingType::Texture {
 /// Sampling of a texture: through a sampler or by texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Filterable {
-    /// Through a sampler.
     Yes,
     /// Texel by texel: floats need not be filterable.
     No,
@@ -214,7 +210,7 @@ pub(crate) enum Filterable {
 pub(crate) mod testing {
     use super::*;
 
-    /// A device without a window, which encodes by itself as little as most windows do.
+    /// A device without a window, whose target, as those of most windows, encodes nothing.
     pub(crate) fn gpu() -> Gpu {
         let mut instance = wgpu::InstanceDescriptor::new_without_display_handle();
         instance.backends = wgpu::Backends::VULKAN;

@@ -208,7 +208,6 @@ pub(crate) fn joined(areas: Vec<CellRect>) -> Vec<CellRect> {
     joined
 }
 
-/// The pass.
 #[derive(Debug)]
 pub(crate) struct LightSurface {
     layout: wgpu::BindGroupLayout,

@@ -70,7 +70,7 @@ impl Offscreen {
         })
     }
 
-    /// The device.
+    /// The device that draws.
     #[must_use]
     pub fn gpu(&self) -> &Gpu {
         &self.gpu

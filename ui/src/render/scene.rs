@@ -29,8 +29,8 @@ use maulstick_client::frames::tiles::Wanted;
 use maulstick_client::frames::{FrameInbox, FrameSource, pull};
 use maulstick_client::state::RigEvent;
 
-/// The window is drawn anew at most this often for frames and samples, of which a device sends up to
-/// 1,000 a second; where the processor draws, less often, for the paint needs it too.
+/// Shortest time between two drawings of the window for frames and samples, of which a device sends up to 1,000 a
+/// second; longer if the processor draws, for the paint needs it too.
 const REPAINT: Duration = Duration::from_millis(16);
 const REPAINT_BY_PROCESSOR: Duration = Duration::from_millis(40);
 /// A request without delay is for two frames, the second to settle what the first began.
@@ -57,10 +57,10 @@ struct Painter {
     brushes: BrushRenderer,
 }
 
-/// How the desk is seen.
+/// View and light of the desk.
 #[derive(Debug)]
 pub(crate) struct Seen<'a> {
-    /// Where it is in the window.
+    /// Its projection in the window.
     pub view: &'a View,
     /// Pixels of a point.
     pub pixels_per_point: f32,
@@ -70,7 +70,6 @@ pub(crate) struct Seen<'a> {
 
 /// Source of frames, and receiver of their reports.
 pub(crate) struct Source {
-    /// The bus.
     pub bus: Arc<dyn Bus>,
     /// The query for frames.
     pub topic: String,

@@ -199,7 +199,7 @@ fn cube_texture(gpu: &Gpu, colours: &[[f32; 3]]) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// The passes.
+/// Passes that draw a surface.
 #[derive(Clone, Debug)]
 pub struct ShowSurface {
     layout: wgpu::BindGroupLayout,

@@ -38,7 +38,6 @@ struct Unlit {
     bound: wgpu::BindGroup,
 }
 
-/// The textures.
 #[derive(Debug)]
 pub(crate) struct TileAtlas {
     state: AtlasState,

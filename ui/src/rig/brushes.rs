@@ -34,7 +34,7 @@ struct Heard {
     seq: u64,
 }
 
-/// States that come later than so many samples say nothing of how a pen is led.
+/// States that come more than this number of samples late say nothing of how a pen is led.
 const RECENT: usize = 256;
 
 /// A brush that made itself known.
@@ -60,9 +60,9 @@ struct TrackedBrush {
 /// A brush in the hand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BrushPose<'a> {
-    /// Its name.
+    /// Name of the brush.
     pub name: &'a str,
-    /// Its file.
+    /// Description of the brush.
     pub file: &'a BrushFile,
     /// The surface below.
     pub plane: Plane,
@@ -337,9 +337,10 @@ impl TrackedBrush {
         {
             let led = DVec3::from_array(solve.pose.position_m) * solve.zoom;
             let shift = led - place(then).translation;
-            brush.translation += match sample.in_air() {
-                true => DVec3::new(0.0, 0.0, shift.z),
-                false => DVec3::new(shift.x, shift.y, 0.0),
+            brush.translation += if sample.in_air() {
+                DVec3::new(0.0, 0.0, shift.z)
+            } else {
+                DVec3::new(shift.x, shift.y, 0.0)
             };
         }
         let far = brush.translation.abs().max_element();

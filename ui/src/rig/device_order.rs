@@ -21,18 +21,13 @@ pub(crate) enum DeviceOrder {
 pub(crate) enum SetupChange {
     /// Lets the user at this machine use its devices.
     Allow,
-    /// Adds a device.
     Add(NewDevice),
-    /// Changes one.
     Use(DeviceChange),
     /// Gives one another name.
     Rename {
-        /// The device.
         device: String,
-        /// Its new name.
         name: String,
     },
-    /// Removes one.
     Remove(String),
 }
 
@@ -63,7 +58,6 @@ impl SetupChange {
 /// A fit in progress.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct FitProgress {
-    /// The device.
     pub device: String,
     /// Its steps so far.
     pub events: Vec<FitEvent>,

@@ -44,7 +44,6 @@ enum Made {
     Removed(String),
 }
 
-/// Makes a change.
 fn carry_out(change: &SetupChange, rig: &str) -> Result<Made, UserError> {
     let made = match change {
         SetupChange::Allow => allow().map(|()| Made::Allowed),
@@ -61,7 +60,7 @@ fn carry_out(change: &SetupChange, rig: &str) -> Result<Made, UserError> {
     Ok(made?)
 }
 
-/// What the newest listing shows.
+/// Contents of the newest listing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Seen {
     nodes: Vec<String>,

@@ -29,12 +29,7 @@ enum DeviceFault {
     #[default]
     None,
     /// There is no device.
-    Trouble {
-        /// What is wrong.
-        what: String,
-        /// What to do about it.
-        help: String,
-    },
+    Trouble { what: String, help: String },
     /// It gives no force: the faults that it has latched.
     NoForce(String),
 }
@@ -104,7 +99,7 @@ impl HealthMonitor {
             match who(node, state) {
                 Some((who, Some(help))) => notifications.fault(stopped(&who), help),
                 Some((who, None)) => notifications.note(tr!(
-                    "{who} has left. Any other stylus and the mouse go on painting.",
+                    "{who} is disconnected. Any other stylus and the mouse still paint.",
                     who
                 )),
                 None => {}
@@ -183,14 +178,15 @@ impl HealthMonitor {
                 tr!("End the rig, and start it again with all of its programs of one version."),
             ),
             Reason::Rival | Reason::Leap => notifications.fault(
-                tr!(
-                    "{who} is there twice: the one that started last is followed.",
-                    who
-                ),
+                tr!("{who} is running twice: the newest one is used.", who),
                 tr!("End the other program, or give it another name."),
             ),
             error => notifications.fault(
-                tr!("{who} sends what is not understood: {error}", who, error),
+                tr!(
+                    "{who} sends messages that cannot be read: {error}",
+                    who,
+                    error
+                ),
                 tr!("Start it again; if it is a program of your own, see docs/devices.md."),
             ),
         }
@@ -201,7 +197,7 @@ impl HealthMonitor {
 /// process that comes and goes.
 fn who(node: &str, state: &RigState) -> Option<(String, Option<&'static str>)> {
     if node == PAINT {
-        let help = tr!("The canvas stays as it is shown, and goes on when it is back.");
+        let help = tr!("The canvas stays as displayed, and painting continues after the restart.");
         return Some((tr!("The painting engine").to_owned(), Some(help)));
     }
     if let Some(brush) = node.strip_prefix(BRUSH_NODE) {

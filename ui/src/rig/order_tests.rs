@@ -39,7 +39,7 @@ const CHANGES: usize = 200;
 /// The window looks at its queue so often, ms.
 const FRAME_MS: u64 = 16;
 
-/// What a brush is painted with, in words.
+/// Settings of a brush that paints, in words.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Setting {
     width_mm: f64,

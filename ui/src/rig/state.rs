@@ -28,7 +28,7 @@ pub(crate) struct RigBrush {
     pub name: String,
     /// Its brush file, parsed and as text; `None` until its node has sent it.
     pub file: Option<(BrushFile, String)>,
-    /// Start of its node: a brush that is started anew has the file of `rig.toml`.
+    /// Start of its node: a brush that is started again has the file of `rig.toml`.
     pub epoch: u32,
     /// The brush file requested for it; `None` once its node has answered.
     pub asked: Option<BrushFile>,
@@ -38,10 +38,9 @@ pub(crate) struct RigBrush {
     pub carried: Option<CarriedPaint>,
 }
 
-/// Whether a brush is on a surface.
+/// Contact of a brush with a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BrushContact {
-    /// It is lifted.
     Lifted,
     /// A hand has it on a surface.
     Held,
@@ -58,7 +57,7 @@ impl BrushContact {
 /// Set-up of the devices, as far as the window shows it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DeviceSetup {
-    /// What is attached; `None` until it was looked for.
+    /// Attached devices; `None` until the first search.
     pub listing: Option<DeviceListing>,
     /// A fit of a device to the canvas in progress.
     pub fit: Option<FitProgress>,
@@ -69,7 +68,7 @@ pub(crate) struct DeviceSetup {
 /// The rig as the window knows it.
 #[derive(Clone, Debug)]
 pub(crate) struct RigState {
-    /// What its messages say.
+    /// State that its messages report.
     pub live: LiveRig,
     /// The scene on the desk as brushes see it.
     pub desk: Option<Desk>,
@@ -77,7 +76,7 @@ pub(crate) struct RigState {
     pub brushes: Vec<RigBrush>,
     /// Index of the brush that the window's mouse moves and its panels show.
     pub in_hand: usize,
-    /// Whether a hand has the brush of the panels on a surface: it is not changed then.
+    /// True while a hand has the brush of the panels on a surface: it is not changed then.
     pub contact: BrushContact,
     /// Set-up of its devices.
     pub setup: DeviceSetup,
@@ -153,7 +152,7 @@ impl RigState {
         self.live.scene = Some(scene);
     }
 
-    /// What swatches are shown with.
+    /// Light and gamut that swatches are shown with.
     #[must_use]
     pub(crate) fn showing(&self) -> Showing<'_> {
         Showing {

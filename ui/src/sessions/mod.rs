@@ -44,18 +44,14 @@ const LONGEST_END: Duration = Duration::from_millis(400);
 pub(crate) enum SessionOrder {
     /// Records the session from now on.
     Record,
-    /// Ends the recording.
     StopRecording,
-    /// Plays a recording.
     Play {
-        /// Its file.
         recording: PathBuf,
         /// True if the painting on the easel may go, although it is in memory only.
         forget: bool,
     },
     /// Plays a take with its middle at a place of the desk.
     PutDown {
-        /// Its file.
         take: PathBuf,
         /// The place, mm from the middle of the desk.
         at_mm: [f64; 2],

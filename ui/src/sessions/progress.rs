@@ -7,7 +7,6 @@ use maulstick_recorder::{Position, ReplayReport};
 /// A recording in progress.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct RecordingProgress {
-    /// Its file.
     pub file: PathBuf,
     /// Its beginning, rig clock, ns.
     pub begun_ns: u64,
@@ -16,9 +15,8 @@ pub(crate) struct RecordingProgress {
 /// A replay in progress.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ReplayProgress {
-    /// The recording.
     pub recording: PathBuf,
-    /// Where it is; `None` until the player has begun.
+    /// Position of the player; `None` until it has begun.
     pub position: Option<Position>,
     /// The painting in which a session is painted again; `None` if streams alone are sent.
     pub painting: Option<PathBuf>,

@@ -76,7 +76,7 @@ pub(super) fn notify(event: &RecorderEvent, notifications: &mut Notifications) {
             cause: Continuation::JournalBroke,
         } => {
             let file = paths::shown(file);
-            notifications.note(tr!("The recording goes on in {file}.", file));
+            notifications.note(tr!("The recording continues in {file}.", file));
         }
         RecorderEvent::PaintingUnavailable(trouble) => {
             let why = match trouble {

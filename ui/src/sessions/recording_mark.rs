@@ -20,10 +20,7 @@ pub(crate) fn show(ui: &mut Ui, work: &mut PanelContext<'_>) -> Option<Response>
     let recording = work.rig.recording.as_ref()?;
     let elapsed_ns = work.rig.live.now_ns.saturating_sub(recording.begun_ns);
     let [dark, light] = RED;
-    let red = match ui.visuals().dark_mode {
-        true => dark,
-        false => light,
-    };
+    let red = if ui.visuals().dark_mode { dark } else { light };
     let words = RichText::new(format!("     {}", clock(elapsed_ns as f64 * 1e-9)));
     let button = Button::new(words.small().color(red))
         .frame_when_inactive(false)

@@ -18,7 +18,6 @@ use crate::widgets::context::PanelContext;
 
 /// Time that a button or an arrow key goes, s.
 const SKIP_S: f64 = 5.0;
-/// The rates.
 const RATES: [Rate; 6] = [
     Rate::Times(0.25),
     Rate::Times(0.5),
@@ -83,10 +82,10 @@ impl Control {
     }
 }
 
-/// The bar.
 #[derive(Debug, Default)]
 pub(crate) struct TransportBar {
-    /// Place of the slider while it is dragged, s: going back paints a session anew, so only where it is let go counts.
+    /// Place of the slider while it is dragged, s: a seek backwards paints the session again, so only the place where
+    /// it is released counts.
     dragged_s: Option<f64>,
 }
 
@@ -142,9 +141,10 @@ impl TransportBar {
                     let (sign, words) = control.words(position);
                     let key = KeyboardShortcut::new(Modifiers::NONE, control.key());
                     let key = written(ui.ctx(), &key);
-                    let hint = match control.has_key(replay, keymap) {
-                        true => format!("{words}  {key}"),
-                        false => tr!("{words} ({key} keeps its use while you paint)", words, key),
+                    let hint = if control.has_key(replay, keymap) {
+                        format!("{words}  {key}")
+                    } else {
+                        tr!("{words} ({key} keeps its use while you paint)", words, key)
                     };
                     if button(ui, sign, words).on_hover_text(hint).clicked() {
                         order = Some(control.order());

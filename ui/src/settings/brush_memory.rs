@@ -28,14 +28,14 @@ struct Used {
     handling: BrushHandling,
 }
 
-/// What is known of a brush of the rig.
+/// State of a brush of the rig.
 #[derive(Clone, Debug)]
 struct Known {
     /// Start of its node for which it was given what is remembered.
     epoch: u32,
-    /// How it was last seen, and since when, s.
+    /// Use that was seen last, and since when, s.
     seen: Option<(Used, f64)>,
-    /// How it is remembered.
+    /// Use that is stored.
     kept: Option<Used>,
 }
 
@@ -221,7 +221,7 @@ mod tests {
         // Once: what the painter takes then stays.
         harness.run_steps(6);
         assert_eq!(harness.state_mut().asked(), []);
-        // A node that starts anew has the brush of the rig's settings.
+        // A node that starts again has the brush of the rig's settings.
         let other = of_library("round").expect("round").clone();
         let text = other.to_toml().expect("written");
         let brush = &mut harness.state_mut().rig.brushes[0];

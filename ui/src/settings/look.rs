@@ -15,9 +15,9 @@ pub enum Theme {
     /// As the system has it.
     #[default]
     System,
-    /// Light on dark.
+    /// Light text on dark ground.
     Dark,
-    /// Dark on light.
+    /// Dark text on light ground.
     Light,
 }
 

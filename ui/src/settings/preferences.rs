@@ -28,7 +28,7 @@ const RECENT: usize = 12;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
-    /// The window itself.
+    /// Size, sides and theme of the window.
     #[serde(flatten)]
     pub window: WindowPreferences,
     /// Brushes and paints.
@@ -36,16 +36,16 @@ pub struct Preferences {
     pub brushes: BrushPreferences,
     /// True once the painter has painted here: the first line of help is no longer needed.
     pub has_painted: bool,
-    /// All that pens over the window have sensed, bits of `axes`: it was told of.
+    /// All axes that pens over the window have sensed, bits of `axes`.
     pub pen_senses: u32,
-    /// The keys.
+    /// Shortcuts of actions.
     pub keys: Keymap,
     /// Paintings that were open, the newest first.
     pub recent: Vec<PathBuf>,
     /// Folder of motions; absent for the usual one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motions: Option<PathBuf>,
-    /// The reference picture.
+    /// Reference picture and its window.
     pub reference: ReferencePreferences,
     /// Tracing pictures of the paintings.
     pub tracings: Tracings,
@@ -93,12 +93,12 @@ pub struct WindowPreferences {
 pub struct BrushPreferences {
     /// The painter's own brush files, in the order of the rack.
     pub own_brushes: Vec<PathBuf>,
-    /// What the brush was loaded with, or is to be; not kept, for a brush begins clean.
+    /// Load of the brush, or the one asked for; not stored, for a brush begins clean.
     #[serde(skip)]
     pub loading: BrushLoad,
     /// The brushes as they were last in the hand, by their names in the rig; without paint.
     pub in_hand: BTreeMap<String, Preset>,
-    /// How the mouse holds the brush.
+    /// Grip of the mouse on the brush.
     pub mouse: Grip,
     /// Pressure of the mouse and tuning of the brush before a preset set them, which end with its brush.
     pub before_preset: Option<BeforePreset>,
@@ -178,7 +178,7 @@ impl Preferences {
         };
         let mut preferences: Self = toml::from_str(&text).map_err(|error| {
             UserError::failure(tr!(
-                "the window's habits cannot be read; it begins with new ones"
+                "the window's habits cannot be read; it begins with the defaults"
             ))
             .at(format!("{}: {}", path.display(), error.message()))
         })?;

@@ -11,7 +11,7 @@ use crate::panels::desk_edits;
 use crate::settings::brush_library::{called, of_library};
 use crate::settings::brush_load::BrushLoad;
 
-/// The name of a preset, or of a set of paints, has at most so many letters.
+/// Largest number of letters in the name of a preset or of a set of paints.
 pub(crate) const NAME_MAX: usize = 40;
 
 /// A brush with its paint.
@@ -37,8 +37,7 @@ pub struct Preset {
     pub flow: f64,
     /// It adds no paint where as much is wet, m; 0 for no such bound.
     pub most_m: f64,
-    /// Its load. Where no paint is named but thinner, the paint that was loaded last is thinned; else the brush keeps
-    /// what it carries.
+    /// Its load. If only thinner is named, the paint that was loaded last is thinned; else the brush keeps its paint.
     pub loading: BrushLoad,
     /// True for a brush that is cleaned first.
     pub clean: bool,
@@ -66,7 +65,7 @@ impl Default for Preset {
     }
 }
 
-/// How a brush was pressed and tuned before a preset.
+/// Pressure and tuning of a brush before a preset.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BeforePreset {
     /// The brush of the rig.

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WindowSide {
-    /// At the left.
+    /// Left of the view.
     Left,
-    /// At the right.
+    /// Right of the view.
     Right,
 }
 

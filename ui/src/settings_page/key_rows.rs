@@ -15,7 +15,7 @@ use crate::input::keys::{BINDINGS, Binding, written};
 const HEIGHT: f32 = 220.0;
 const LEAST_HEIGHT: f32 = 60.0;
 
-/// What the rows wait for.
+/// State of the rows that wait for an answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Waits {
     #[default]
@@ -28,7 +28,6 @@ enum Waits {
     NotHeld,
 }
 
-/// The rows.
 #[derive(Debug, Default)]
 pub(super) struct KeyRows {
     waits: Waits,
@@ -79,7 +78,7 @@ impl KeyRows {
         };
     }
 
-    /// Shows them in a list that is at most so high, points.
+    /// Shows them in a list of at most this height, points.
     pub(super) fn show(&mut self, ui: &mut Ui, most: f32, keymap: &mut Keymap) {
         ui.horizontal(|ui| {
             ui.strong(tr!("Keys"));
@@ -177,9 +176,10 @@ impl KeyRows {
             ui.memory_mut(|memory| memory.set_focus_lock_filter(button.id, all));
         }
         if button.clicked() {
-            self.waits = match is_waiting {
-                true => Waits::Nothing,
-                false => Waits::Key(place),
+            self.waits = if is_waiting {
+                Waits::Nothing
+            } else {
+                Waits::Key(place)
             };
         }
         ui.label(translated(binding.words));

@@ -1,8 +1,8 @@
-//! Dialog of settings: text size, language, theme, units, keys. What is changed holds at once.
+//! Dialog of settings: text size, language, theme, units, keys. A change takes effect at once.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | `key_rows` | the keys, and how they are changed |
+//! | `key_rows` | the keys, and their changes |
 
 mod key_rows;
 
@@ -36,7 +36,6 @@ pub(crate) struct SettingsPage {
 }
 
 impl SettingsPage {
-    /// Opens it.
     pub(crate) fn open(&mut self) {
         self.shown = Some(KeyRows::default());
     }

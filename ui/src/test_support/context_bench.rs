@@ -72,7 +72,7 @@ impl Bench {
         requests.filter_map(command).collect()
     }
 
-    /// The notifications.
+    /// Texts of the notifications.
     pub(crate) fn told(&self) -> Vec<&str> {
         let notifications = self.notifications.shown().iter();
         notifications.map(|toast| toast.what.as_str()).collect()

@@ -55,7 +55,6 @@ impl Bench {
         requests.map(command).collect()
     }
 
-    /// Answers a command.
     pub(crate) fn answer(&mut self, asked: &(String, Command), result: Result<Detail, UserError>) {
         let told = Outcome {
             request: Request::Command {
@@ -119,7 +118,6 @@ pub(crate) fn ctrl(harness: &mut Harness<'_, Bench>, key: Key, more: Modifiers) 
     listed(harness);
 }
 
-/// Presses a key.
 pub(crate) fn press(harness: &mut Harness<'_, Bench>, key: Key) {
     harness.key_press(key);
     harness.run_steps(3);
@@ -173,7 +171,6 @@ pub(crate) fn let_go(harness: &mut Harness<'_, Bench>, paths: &[&Path]) {
     harness.step();
 }
 
-/// A seeded fault.
 type Seeded<'a, T> = Box<dyn FnOnce(&mut T) + 'a>;
 
 /// Compares what is shown with its picture, and sees that `fault` makes another one.
@@ -205,7 +202,7 @@ pub(crate) fn picture<T: 'static>(
         harness.run_steps(4);
         harness
     };
-    // Where somebody wants to look at it: both themes, and finer pixels.
+    // With this variable set, both themes are drawn with finer pixels, to be looked at.
     if let Some(place) = std::env::var_os("MAULSTICK_LOOK") {
         for (theme, word) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
             let image = drawn(theme, 2.0, None).render().expect("a picture");

@@ -67,7 +67,7 @@ pub(crate) fn status() -> PaintStatus {
     }
 }
 
-/// A paint node with so many steps to undo and to redo.
+/// A paint node with these numbers of steps to undo and to redo.
 pub(crate) fn steps(undo: u32, redo: u32) -> PaintStatus {
     PaintStatus {
         undo,
@@ -99,7 +99,7 @@ impl<P: Panel + Default> Bench<P> {
 }
 
 impl<P> Bench<P> {
-    /// What the panel works with.
+    /// State that the panel works with.
     pub(crate) fn work(&mut self) -> PanelContext<'_> {
         PanelContext {
             rig: &mut self.rig,
@@ -172,7 +172,7 @@ pub(crate) fn picture<P: Panel + Default + 'static>(
         harness.fit_contents();
         harness
     };
-    // Where somebody wants to look at it: both themes, and finer pixels.
+    // With this variable set, both themes are drawn with finer pixels, to be looked at.
     if let Some(place) = std::env::var_os("MAULSTICK_LOOK") {
         for (theme, word) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
             let mut harness = drawn(rig.clone(), theme, 2.0);

@@ -25,7 +25,6 @@ use settings::Tracing;
 /// A tracing picture while it loads.
 #[derive(Debug, Default)]
 enum Slot {
-    /// No picture.
     #[default]
     Empty,
     /// It is being read.
@@ -135,7 +134,7 @@ impl PanelContext<'_> {
         }
     }
 
-    /// A painting goes on in another file: so does its tracing picture.
+    /// The painting continues in another file, and so does its tracing picture.
     pub(crate) fn carry_tracing(&mut self, from: &str, to: &str) {
         let tracings = &mut self.preferences.tracings.0;
         if let Some(tracing) = tracings.remove(from) {

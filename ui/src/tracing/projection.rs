@@ -125,7 +125,7 @@ impl Place {
     }
 }
 
-/// What is bound, and of which picture at which place it is.
+/// Bindings of the picture that is drawn, and its source and place.
 #[derive(Debug)]
 struct Thrown {
     slide: Weak<Slide>,

@@ -22,7 +22,7 @@ quantity! {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Tracing {
-    /// Its file.
+    /// File of the picture.
     pub path: PathBuf,
     /// How much of it is seen, a [`TracingStrength`].
     pub strength: f32,

@@ -15,8 +15,8 @@ pub const DESK_COLOUR: Color32 = Color32::from_gray(60);
 const MARGIN: f32 = 12.0;
 /// Margin below the surfaces, points: the bar and the name of the painting lie there, over neither wells nor jars.
 const BELOW: f32 = 42.0;
-/// Room for so much of the palette is always left, m: its wells and the cleaner, and what perspective takes of a board
-/// that lies higher than the canvas.
+/// Width of the palette that always stays in view, m: its wells and the cleaner, and the part of a board above the
+/// canvas that perspective takes.
 const SLIVER_M: f64 = 0.0527;
 /// So much of its middle, where paint is mixed, shows as well as long as the canvas is not smaller than [`SMALL`], m.
 const MIXING_M: f64 = 0.06;
@@ -75,7 +75,7 @@ impl View {
         let mixing = beside(board.x.min(SLIVER_M + MIXING_M));
         let across = beside(sliver).min(mixing.max(SMALL / size.x));
         let scale = across.min(room[1] / high);
-        // What is left of the width shows more of the palette, then lies on both sides alike.
+        // The rest of the width shows more of the palette, then lies on both sides alike.
         let left = room[0] / scale - (size.x + gap + sliver);
         let more = left
             .min(board.x - sliver + f64::from(MARGIN) / scale)

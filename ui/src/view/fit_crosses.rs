@@ -12,10 +12,9 @@ use crate::view::camera::View;
 const ARM: f32 = 14.0;
 /// The corner that is asked for.
 const ASKED: Color32 = Color32::from_rgb(240, 120, 30);
-/// The others.
 const OTHER: Color32 = Color32::from_gray(150);
 
-/// Where a corner lies on the desk, m, of a canvas that lies as it does in the beginning.
+/// Position of a corner on the desk, m, for a canvas that lies as it does in the beginning.
 #[must_use]
 fn place(canvas: &Surface, corner: Corner) -> DVec3 {
     let [x, y] = canvas

@@ -55,7 +55,7 @@ impl Part {
     /// `None` if the surface is seen from its edge.
     fn of(surface: &Surface, view: &View, pixels_per_point: f32) -> Option<Self> {
         let at: [Pos2; 4] = corners(surface).map(|corner| view.to_window(corner));
-        // What is raised is larger.
+        // A raised board looks larger.
         let side = |from: usize, to: usize| (at[to] - at[from]).length() * pixels_per_point;
         let pixels = [side(0, 1).max(side(2, 3)), side(0, 2).max(side(1, 3))];
         let size = size_m(surface) * surface.zoom;

@@ -16,7 +16,6 @@ const GAP: f32 = 6.0;
 /// Names that are shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Shown {
-    /// All.
     All,
     /// The name of the well under a point of the desk, m.
     Under(DVec3),
@@ -63,22 +62,24 @@ pub(crate) fn draw(painter: &Painter, view: &View, palette: &Surface, shown: Sho
     let half = 0.5 * f64::from(palette.cells[0]) * palette.cell_m;
     for well in named(palette, shown) {
         let [x, y] = well.center_m;
-        let (inward, align) = match x > half {
-            true => (-1.0, Align2::RIGHT_CENTER),
-            false => (1.0, Align2::LEFT_CENTER),
+        let (inward, align) = if x > half {
+            (-1.0, Align2::RIGHT_CENTER)
+        } else {
+            (1.0, Align2::LEFT_CENTER)
         };
         // Next to another well the name goes over its own.
-        let (align, edge, gap) = match crowded(palette, well, inward) {
-            false => (
-                align,
-                [x + inward * well.radius_m, y],
-                vec2(inward as f32, 0.0),
-            ),
-            true => (
+        let (align, edge, gap) = if crowded(palette, well, inward) {
+            (
                 Align2::CENTER_BOTTOM,
                 [x, y + well.radius_m],
                 vec2(0.0, -0.3),
-            ),
+            )
+        } else {
+            (
+                align,
+                [x + inward * well.radius_m, y],
+                vec2(inward as f32, 0.0),
+            )
         };
         let edge = DVec3::new(edge[0], edge[1], 0.0) * palette.zoom;
         let at = view.to_window(pose.point(edge)) + GAP * gap;

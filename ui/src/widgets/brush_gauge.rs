@@ -41,9 +41,10 @@ pub(crate) fn show(ui: &mut Ui, work: &PanelContext<'_>) -> Option<Response> {
         level.min.y = level.max.y - LEVEL;
         painter.rect_stroke(level, 0.0, line, StrokeKind::Outside);
         level.max.x = level.min.x + carried.load_share * level.width();
-        let colour = match carried.load_share < LOW {
-            true => ui.visuals().warn_fg_color,
-            false => ui.visuals().selection.stroke.color,
+        let colour = if carried.load_share < LOW {
+            ui.visuals().warn_fg_color
+        } else {
+            ui.visuals().selection.stroke.color
         };
         painter.rect_filled(level, 0.0, colour);
     }

@@ -13,7 +13,6 @@ use crate::settings::preferences::Preferences;
 pub(crate) struct PanelContext<'a> {
     /// State of the rig.
     pub rig: &'a mut RigState,
-    /// Requests to it.
     pub requests: &'a mut Requests,
     /// Settings that are remembered.
     pub preferences: &'a mut Preferences,

@@ -16,14 +16,13 @@ const CAP: f32 = 24.0;
 /// Room at either side of a sign on its cap, points.
 const ASIDE: f32 = 7.0;
 
-/// What is pressed.
+/// Meaning of a pressed key.
 #[derive(Clone, Copy, Debug)]
 enum Means {
     /// The mouse is dragged.
     Drag,
     /// Its wheel is turned.
     Wheel,
-    /// A key.
     Key(Action),
 }
 

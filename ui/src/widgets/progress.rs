@@ -15,7 +15,7 @@ use maulstick_client::request::Peer;
 
 /// Duration up to which work is not shown, ns.
 const SHORT_NS: u64 = 500_000_000;
-/// A light that lasts so long is one that was wanted, ns.
+/// A light that lasts longer than this was wanted, ns.
 const STOOD_NS: u64 = 1_000_000_000;
 /// Width of a bar, points.
 const BAR: f32 = 160.0;
@@ -148,9 +148,10 @@ impl Progress {
         let back = |light: &Light| Cancel::Paint(Box::new(desk_edits::relight(light.clone())));
         (status.baked < status.baking).then(|| Job {
             kind: Kind::Relighting,
-            words: match is_relit {
-                true => tr!("Relighting dry layers").into(),
-                false => tr!("Showing the layers anew").into(),
+            words: if is_relit {
+                tr!("Relighting dry layers").into()
+            } else {
+                tr!("Showing the layers anew").into()
             },
             share: Some(share),
             cancel: before.as_ref().filter(|_| is_relit).map(back),
@@ -198,9 +199,10 @@ fn drying(rig: &RigState) -> Option<Job> {
     let drying = rig.live.paint.as_ref()?.status.drying.as_ref()?;
     Some(Job {
         kind: Kind::Drying,
-        words: match drying.layer.is_empty() {
-            true => tr!("Drying").to_owned(),
-            false => tr!("Drying “{layer}”", layer = drying.layer),
+        words: if drying.layer.is_empty() {
+            tr!("Drying").to_owned()
+        } else {
+            tr!("Drying “{layer}”", layer = drying.layer)
         },
         share: Some(f64::from(drying.share)),
         cancel: Some(Cancel::Paint(Box::new(desk_edits::stop_drying()))),

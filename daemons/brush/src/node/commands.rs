@@ -34,7 +34,7 @@ impl BrushNode {
         if asked.after.is_some() {
             return Ok(Outcome::refused(
                 "a brush has no journal in which to wait",
-                "ask without a place in it",
+                "send the command without a position in the journal",
             ));
         }
         let BrushCommand::Define { brush, toml } = match &asked.command {

@@ -60,7 +60,7 @@ impl Files {
         if asked.after.is_some() {
             return Err(Refusal::say(
                 "this command has no place in the journal",
-                "ask without a place in it",
+                "send the command without a position in the journal",
             ));
         }
         let asker = (asked.client, asked.number);

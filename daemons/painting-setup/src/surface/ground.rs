@@ -16,13 +16,13 @@ use maulstick_rig::table_file::read_table;
 use crate::refusal::refused;
 use crate::surface::picture::{no_picture, open_picture};
 
-/// A spectrum has at most this many bytes.
+/// Greatest size of a spectrum file, bytes.
 const SPECTRUM_MAX: usize = maulstick_types::limits::SPECTRUM_MAX;
 
 /// Source of a ground.
 #[derive(Clone, Debug)]
 pub enum GroundFile {
-    /// A name.
+    /// Ground of a library, by name.
     Named(String),
     /// A file of reflectances: its text.
     Spectrum(String),
@@ -33,8 +33,7 @@ pub enum GroundFile {
 impl GroundFile {
     /// Reads a name, a CSV file of nm,reflectance, or a picture.
     ///
-    /// # Errors
-    /// A [`UserError`] where a file cannot be read or is neither, with file and line.
+    /// # Errors A [`UserError`] where a file cannot be read or is neither, with file and line.
     pub fn read(name: &str) -> Result<Self, UserError> {
         let path = Path::new(name);
         if !is_path(name) {
@@ -59,10 +58,9 @@ impl GroundFile {
         Ok(Self::Spectrum(text))
     }
 
-    /// A picture as surfaces of so many cells hold it, a PNG; `None` if it is no picture.
+    /// A picture for surfaces with this number of cells, a PNG; `None` if it is no picture.
     ///
-    /// # Errors
-    /// A [`UserError`] if the surface is too large for it.
+    /// # Errors A [`UserError`] if the surface is too large for it.
     pub fn picture(&self, cells: [u32; 2]) -> Result<Option<Arc<[u8]>>, UserError> {
         let Self::Picture(image, name) = self else {
             return Ok(None);

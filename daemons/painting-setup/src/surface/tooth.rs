@@ -9,7 +9,7 @@ use maulstick_rig::UserError;
 
 use crate::surface::picture::{no_picture, open_picture};
 
-/// Depth of a tooth for which nothing is said, µm.
+/// Default depth of a tooth, µm.
 pub const DEPTH: f64 = 80.0;
 
 /// A picture that becomes a tooth: white is high. It is repeated beyond its edges.
@@ -23,10 +23,9 @@ pub struct ToothPicture {
 }
 
 impl ToothPicture {
-    /// A picture that is to be so wide on the canvas, or as wide as that, and so deep.
+    /// A picture with a width on the canvas, or that of the canvas, and a depth.
     ///
-    /// # Errors
-    /// A [`UserError`] for sizes out of range.
+    /// # Errors A [`UserError`] for sizes out of range.
     pub fn new(
         image: Image,
         file: &str,
@@ -76,7 +75,7 @@ impl ToothPicture {
         )
     }
 
-    /// Its width on a canvas of so many cells of `cell_m`, mm.
+    /// Its width on a canvas of `cells` of `cell_m`, mm.
     fn width_on(&self, cells: [u32; 2], cell_m: f64) -> f64 {
         self.width_mm.unwrap_or(f64::from(cells[0]) * cell_m * 1e3)
     }

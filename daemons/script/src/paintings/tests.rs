@@ -1,4 +1,4 @@
-//! What each painting must look like, measured at a small size.
+//! Appearance of each painting, measured at a small size.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ use super::*;
 
 /// Side of a cell, mm.
 const CELL_MM: f64 = 0.5;
-/// Thickness of the toned ground that lies under all, µm, and a little more.
+/// Thickness of the toned ground under all paint, µm, and a little more.
 const GROUND_UM: f32 = 40.0;
 
 /// A finished painting, measured.
@@ -92,7 +92,7 @@ impl Measured {
         of.map(f64::from).sum::<f64>() / cells.len() as f64
     }
 
-    /// Share of the canvas on which more than the toned ground lies.
+    /// Share of the canvas with more than the toned ground.
     fn covered(&self) -> f64 {
         let over = self.thickness_um.iter().filter(|um| **um > GROUND_UM);
         over.count() as f64 / self.thickness_um.len() as f64

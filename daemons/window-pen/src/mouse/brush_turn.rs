@@ -9,22 +9,20 @@ use super::Pointer;
 use super::grip::Grip;
 use super::pixel_path::PixelPath;
 
-/// Travel of the pointer after which the direction of a stroke is known, m, and in pixels: a shorter way in whole pixels
-/// has hardly one.
+/// Travel of the pointer after which the direction of a stroke is known, m, and in pixels: a shorter path in whole
+/// pixels hardly has one.
 const KNOWN_M: f64 = 2.5e-3;
 const KNOWN_PIXELS: f64 = 8.0;
-/// Time for which a stroke waits for its direction, ns: then any way is enough, of which this much tells one, m and in
-/// pixels.
+/// Time for which a stroke waits for its direction, ns; after it a path of this length suffices, m and in pixels.
 const WAIT_NS: u64 = 80_000_000;
 const TELLING_M: f64 = 0.8e-3;
 const TELLING_PIXELS: f64 = 3.0;
-/// Longest time for which it waits, ns: a hand is slow to start, and a dab has no direction.
+/// Longest wait of a stroke for its direction, ns: a hand is slow to start, and a dab has none.
 const LONGEST_NS: u64 = 250_000_000;
 /// Length of the string at which the pointer draws the turning point behind it, m and in pixels.
 const STRING_M: f64 = 6e-3;
 const STRING_PIXELS: f64 = 16.0;
-/// The pointer may be so far beside the way before the brush turns, m and in pixels: a way drawn in whole pixels has
-/// steps.
+/// Distance of the pointer from its line before the brush turns, m and in pixels: a path in whole pixels has steps.
 const SLACK_M: f64 = 0.4e-3;
 const SLACK_PIXELS: f64 = 1.2;
 
@@ -35,7 +33,7 @@ pub struct BrushTurn {
     across_rad: f64,
     /// End of the string that the pointer draws, desk, m; `None` between strokes.
     turning_point: Option<DVec2>,
-    /// Time at which a stroke began, ns, and its places, while its direction is unknown.
+    /// Start of a stroke, ns, and its places, while its direction is unknown.
     waiting: Option<(u64, Vec<Pointer>)>,
     path: PixelPath,
 }
@@ -52,7 +50,7 @@ impl BrushTurn {
         pixel_m: f64,
     ) -> Vec<Pointer> {
         let mut turned = Vec::new();
-        // Fingers or navigation took over: what waits was no stroke.
+        // Fingers or navigation took over: the waiting places were no stroke.
         if places.is_empty() {
             (self.waiting, self.turning_point) = (None, None);
             self.path = PixelPath::default();
@@ -108,7 +106,7 @@ impl BrushTurn {
         let length = string.length();
         if self.waiting.is_none() && length >= KNOWN_M.max(KNOWN_PIXELS * pixel_m) {
             let across = atan2(string.y, string.x) + FRAC_PI_2;
-            // Within a stroke the brush turns the shorter way, and is not flipped where the stroke goes back.
+            // Within a stroke the brush turns the shorter way, and is not flipped by a reversal.
             let off = self.off(across, PI);
             let slack = SLACK_M.max(SLACK_PIXELS * pixel_m) / length;
             self.across_rad += off.signum() * (off.abs() - slack).max(0.0);
@@ -117,7 +115,7 @@ impl BrushTurn {
         self.turning_point = Some(at - string * (longest / length.max(longest)));
     }
 
-    /// The turn from the present one to `across` or, nearer, so many periods beside it, rad.
+    /// Rotation from the present one to `across` or, if nearer, whole periods beside it, rad.
     fn off(&self, across: f64, period: f64) -> f64 {
         let turns = ((self.across_rad - across) / period).round();
         across + turns * period - self.across_rad
@@ -125,9 +123,10 @@ impl BrushTurn {
 
     fn with_turn(&mut self, place: &Pointer, grip: &Grip, pixel_m: f64) -> Pointer {
         let across = if grip.follows { self.across_rad } else { 0.0 };
-        let at = match place.pressed {
-            true => self.path.smooth(point(place), pixel_m),
-            false => point(place),
+        let at = if place.pressed {
+            self.path.smooth(point(place), pixel_m)
+        } else {
+            point(place)
         };
         Pointer {
             at: [at.x, at.y, place.at[2]],
@@ -136,7 +135,7 @@ impl BrushTurn {
         }
     }
 
-    /// Sets the brush down across the way of the places that waited.
+    /// Sets the brush down across the path of the waiting places.
     fn release(&mut self, into: &mut Vec<Pointer>, grip: &Grip, pixel_m: f64) {
         let Some((_, waiting)) = self.waiting.take() else {
             return;
@@ -172,9 +171,10 @@ fn direction(places: &[Pointer], least_m: f64) -> Option<f64> {
     }
     let along = 0.5 * atan2(2.0 * xy, xx - yy);
     let (sine, cosine) = sin_cos(along);
-    match DVec2::new(cosine, sine).dot(way) < 0.0 {
-        true => Some(along + PI),
-        false => Some(along),
+    if DVec2::new(cosine, sine).dot(way) < 0.0 {
+        Some(along + PI)
+    } else {
+        Some(along)
     }
 }
 
@@ -268,8 +268,8 @@ mod tests {
         assert!(all < 0.2, "{all}: {turns:?}");
     }
 
-    /// The pointer of a hand that goes straight, on a display whose pixels are large or small, fast or slowly: the brush
-    /// is set down across the stroke and stays so, and its path does not leave the hand's.
+    /// The pointer of a hand that moves straight, on a display with large or small pixels, fast or slowly: the brush is
+    /// set down across the stroke and stays so, and its path does not leave the hand's.
     #[test]
     fn a_straight_stroke_in_whole_pixels_is_straight_from_its_beginning() {
         let (mut slanted, mut turns, mut steps, mut aside) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);

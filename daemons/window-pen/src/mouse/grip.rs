@@ -1,4 +1,4 @@
-//! How the mouse holds the brush.
+//! Grip of the mouse on the brush.
 
 use maulstick_types::quantity;
 use maulstick_types::values::Quantity;

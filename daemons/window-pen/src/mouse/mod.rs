@@ -33,7 +33,6 @@ const FRAME_NS: u64 = 90_000_000;
 pub struct Pointer {
     /// On the desk, m.
     pub at: [f64; 3],
-    /// The primary button.
     pub pressed: bool,
     /// Turn of the brush about its axis, rad.
     pub twist_rad: f64,
@@ -99,7 +98,7 @@ impl Mouse {
         })
     }
 
-    /// Takes another brush into the hand, or keeps the one that is there.
+    /// Takes another brush into the hand, or keeps the present one.
     ///
     /// # Errors
     /// [`BusError::Topic`].
@@ -119,7 +118,7 @@ impl Mouse {
         now_ns < self.silent_until_ns
     }
 
-    /// Sends the movement of the pointer since the last call, pressed so hard, 0 to 1: its positions in order, evenly
+    /// Sends the movement of the pointer since the last call, at a pressure of 0 to 1: its positions in order, evenly
     /// spread over that time; none while it is not over the desk.
     ///
     /// # Errors
@@ -147,8 +146,8 @@ impl Mouse {
         }
         self.hovers = places.last().copied().filter(|last| !last.pressed);
         self.was_in_range = true;
-        // After a pause the pointer has not crept here. In a stroke a frame may be as long as it likes: what was moved
-        // in it took all of it, or the brush would leap and rest by turns.
+        // After a pause the pointer has not crept here. In a stroke a long frame counts as a whole, because otherwise
+        // the brush would leap and rest by turns.
         let since_ns = if self.pressed.is_some() && places[0].pressed {
             self.sent_ns
         } else {
@@ -195,8 +194,8 @@ impl Mouse {
 }
 
 impl Mouse {
-    /// Places that took so long, with as many more between those of a pressed button as leave no pause
-    /// that the brush would not cross: it is known that the button was not let go.
+    /// Places over a duration, with enough additional ones between those of a pressed button that the brush crosses any
+    /// pause: the button is known to have stayed down.
     fn finer(&self, places: &[Pointer], took_ns: u64) -> Vec<Pointer> {
         let each_ns = took_ns / places.len().max(1) as u64;
         let parts = each_ns / BRIDGED_NS + 1;
@@ -228,7 +227,6 @@ mod tests {
     use super::*;
 
     const SECOND: u64 = 1_000_000_000;
-    /// The brush touches.
     const PRESSED: Pointer = Pointer {
         at: [0.0; 3],
         pressed: true,
@@ -236,7 +234,7 @@ mod tests {
     };
     const PRESSURE: f64 = 0.5;
 
-    /// A mouse, and who hears it.
+    /// A mouse, and its listener.
     struct Desk {
         net: MemoryNet,
         topics: Topics,

@@ -1,17 +1,17 @@
 //! Path of a pointer that goes in whole pixels, without their steps.
 //!
-//! Along the stroke places stay as they are; to its side they follow a line that turns with them, an α-β filter by
-//! travelled way: so nothing lags behind the hand.
+//! Along the stroke places are unchanged; across it they follow a line that turns with them, an α-β filter by travelled
+//! distance: so nothing lags behind the hand.
 
 use glam::DVec2;
 use maulstick_num::exp;
 
-/// Way over which a place to the side is followed, pixels.
+/// Distance over which lateral changes are followed, pixels.
 const FOLLOWED: f64 = 6.0;
 /// A place farther than this beside the line is a corner, pixels: the path goes there at once.
 const CORNER: f64 = 1.6;
 
-/// Way after which a stroke has a direction again, pixels.
+/// Distance after which a stroke has a direction again, pixels.
 const TELLING: f64 = 6.0;
 
 /// The path of a stroke.
@@ -20,7 +20,7 @@ pub(super) struct PixelPath {
     at: Option<DVec2>,
     /// Direction, a unit vector; `None` while it is unknown.
     along: Option<DVec2>,
-    /// Where it became unknown.
+    /// Place where it became unknown.
     corner: DVec2,
 }
 

@@ -15,7 +15,7 @@ use crate::commands::print_json;
 use crate::commands::say;
 use maulstick_painting_setup::lamp::changed;
 
-/// Options of `maulstick canvas light`; what is not given stays as it is.
+/// Options of `maulstick canvas light`; absent ones are unchanged.
 #[derive(Args, Clone, Debug)]
 pub struct LightOptions {
     #[command(flatten)]
@@ -28,17 +28,16 @@ pub struct LightOptions {
 }
 
 impl LightOptions {
-    /// The change that is asked for.
+    /// The requested change.
     #[must_use]
     pub fn change(&self) -> &LightChange {
         &self.change
     }
 }
 
-/// Changes the light and waits until the dry layers are computed anew; without changes it only prints the light.
+/// Changes the light and waits until the dry layers are recomputed; without changes it only prints the light.
 ///
-/// # Errors
-/// A [`UserError`] for an invalid light, or if no rig runs.
+/// # Errors A [`UserError`] for an invalid light, or if no rig runs.
 pub(super) fn run(options: &LightOptions) -> Result<i32, UserError> {
     // An invalid change is refused even if no rig runs.
     let change = &options.change;

@@ -32,7 +32,7 @@ pub struct MixOptions {
     json: bool,
 }
 
-/// How the paint lies.
+/// Options of a film of paint.
 #[derive(Args, Clone, Debug)]
 pub struct FilmOptions {
     /// Thickness of a film, µm, thinner included [default: an opaque layer]

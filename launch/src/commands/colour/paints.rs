@@ -75,9 +75,10 @@ pub fn run(options: &PaintsOptions) -> Result<i32, UserError> {
             paint.source
         );
     }
-    match options.json {
-        true => print_json(&json!({ "paints": rows }))?,
-        false => print_text(&text)?,
+    if options.json {
+        print_json(&json!({ "paints": rows }))?
+    } else {
+        print_text(&text)?
     }
     Ok(0)
 }

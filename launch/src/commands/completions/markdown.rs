@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, Command};
 
 use super::Headings;
 
-/// What the page begins with.
+/// Beginning of the page.
 const HEAD: &str = "# Commands
 
 `maulstick COMMAND --help` explains the options. Defaults stand in brackets; MM, UM, S and HZ are units of values.
@@ -37,7 +37,7 @@ pub(crate) fn page(program: &Command, headings: &Headings) -> String {
     page
 }
 
-/// True for a command that does nothing itself.
+/// True for a group without an action of its own.
 fn is_group(command: &Command) -> bool {
     command.is_subcommand_required_set()
 }

@@ -1,4 +1,4 @@
-//! `maulstick completions`: what shells, `man` and docs/commands.md say of the commands, from their definitions.
+//! `maulstick completions`: texts about the commands for shells, `man` and docs/commands.md, from their definitions.
 
 mod markdown;
 
@@ -38,10 +38,9 @@ pub enum CompletionsCommand {
     Markdown,
 }
 
-/// Writes what is asked for, of a program whose commands stand under these headings.
+/// Writes the requested pages of a program whose commands have these headings.
 ///
-/// # Errors
-/// A [`UserError`] where the pages cannot be written.
+/// # Errors A [`UserError`] where the pages cannot be written.
 pub(crate) fn run(
     wanted: &CompletionsCommand,
     program: clap::Command,

@@ -10,10 +10,9 @@ use crate::commands::say;
 #[derive(Args, Clone, Debug)]
 pub struct AllowOptions {}
 
-/// Writes the rule, as root or by `pkexec`, which asks for the password.
+/// Writes the rule, as root or with `pkexec`, which asks for the password.
 ///
-/// # Errors
-/// A [`UserError`] with the command to type where it cannot be written so.
+/// # Errors A [`UserError`] with the command to type if that fails.
 pub(super) fn run(_: &AllowOptions) -> Result<i32, UserError> {
     allow()?;
     say!("the user at this machine may use its devices: {RULE}");

@@ -1,4 +1,4 @@
-//! `maulstick device use`: which device paints, with what brush and what law of force, changed while painting.
+//! `maulstick device use`: selects the painting device, its brush and its law of force, even while painting.
 
 use std::str::FromStr;
 
@@ -44,7 +44,7 @@ pub struct UseOptions {
     target: Target,
 }
 
-/// A pressure curve as it is typed.
+/// A pressure curve as typed.
 #[derive(Clone, Debug, PartialEq)]
 struct PressureCurve(Vec<[f64; 2]>);
 
@@ -69,8 +69,7 @@ impl FromStr for PressureCurve {
 
 /// Changes a device.
 ///
-/// # Errors
-/// A [`UserError`] where there is no such device, or the change does not fit.
+/// # Errors A [`UserError`] where there is no such device, or the change does not fit.
 pub(super) fn run(options: &UseOptions) -> Result<i32, UserError> {
     let curve = options.pressure_curve.as_ref();
     let wanted = DeviceChange {

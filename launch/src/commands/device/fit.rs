@@ -27,11 +27,10 @@ pub struct FitOptions {
     target: Target,
 }
 
-/// Has a hand show the corners and writes them; a rig that runs lets go of the device meanwhile.
+/// Guides a hand to the corners and saves them; a running rig releases the device meanwhile.
 ///
-/// # Errors
-/// A [`UserError`] for a device that is not there, corners that do not fit the canvas, or settings that
-/// cannot be written.
+/// # Errors A [`UserError`] for an absent device, corners that do not fit the canvas, or settings that cannot be
+/// written.
 pub(super) fn run(options: &FitOptions) -> Result<i32, UserError> {
     // A signal ends the fit, which puts the device back.
     let stop = Stop::on_signals(&Wake::new())

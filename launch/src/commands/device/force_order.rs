@@ -109,14 +109,15 @@ pub fn give(order: &Order) -> Result<i32, UserError> {
         }
     }
     print_text(&text)?;
-    match silent.is_empty() {
-        true => Ok(0),
-        false => Err(UserError::failure(format!(
+    if silent.is_empty() {
+        Ok(0)
+    } else {
+        Err(UserError::failure(format!(
             "{}: its daemon does not answer, so nothing is changed",
             silent.join(", ")
         ))
         .at(client.topics().force("*"))
-        .help("`maulstick up` shows its nodes; ended by Ctrl-C they leave no force")),
+        .help("`maulstick up` shows its nodes; ended by Ctrl-C they leave no force"))
     }
 }
 
@@ -147,56 +148,56 @@ fn chosen(known: &[DeviceSection], name: &str, client: &Client) -> Result<String
         Some(_) => Ok(name.to_owned()),
         None => {
             let others = told_of(client, Instant::now() + TOGETHER)?;
-            match others.iter().any(|other| other == name) {
-                true => Ok(name.to_owned()),
-                false => {
-                    let names = known.iter().map(|device| device.name.as_str());
-                    let what = format!("there is no device '{name}' in the rig");
-                    Err(UserError::unknown(what, name, names))
-                }
+            if others.iter().any(|other| other == name) {
+                Ok(name.to_owned())
+            } else {
+                let names = known.iter().map(|device| device.name.as_str());
+                let what = format!("there is no device '{name}' in the rig");
+                Err(UserError::unknown(what, name, names))
             }
         }
     }
 }
 
-/// All devices that give force: those of rig.toml, present or not, and others that report that they do.
+/// All devices with force: those of rig.toml, connected or not, and others that report force.
 fn all(known: &[DeviceSection], client: &Client) -> Result<Vec<String>, UserError> {
     let own = known.iter().filter(|device| !device.is_hid());
     let mut found: Vec<String> = own.map(|device| device.name.clone()).collect();
-    let wait = match found.is_empty() {
-        true => PATIENCE,
-        false => TOGETHER,
-    };
+    let wait = if found.is_empty() { PATIENCE } else { TOGETHER };
     for other in told_of(client, Instant::now() + wait)? {
         if !found.contains(&other) {
             found.push(other);
         }
     }
-    match found.is_empty() {
-        true => Err(UserError::failure("no device of the rig gives force")
+    if found.is_empty() {
+        Err(UserError::failure("no device of the rig gives force")
             .at(client.topics().stylus_info("*"))
-            .help("see `[[device]]` of rig.toml")),
-        false => Ok(found),
+            .help("see `[[device]]` of rig.toml"))
+    } else {
+        Ok(found)
     }
 }
 
 fn told(device: &str, reply: &ForceReply) -> String {
     let percent = (reply.strength * 100.0).round();
-    let weaker = match reply.strength < 1.0 {
-        true => format!(", {percent} % when it is on"),
-        false => String::new(),
+    let weaker = if reply.strength < 1.0 {
+        format!(", {percent} % when it is on")
+    } else {
+        String::new()
     };
-    let guidance = match reply.guidance < 1.0 {
-        true => format!(", guidance {} %", (reply.guidance * 100.0).round()),
-        false => String::new(),
+    let guidance = if reply.guidance < 1.0 {
+        format!(", guidance {} %", (reply.guidance * 100.0).round())
+    } else {
+        String::new()
     };
     let fault = match reply.fault.as_str() {
         "" => String::new(),
         fault => format!("; {fault}"),
     };
-    match reply.is_on {
-        true => format!("{device}: force on, {percent} %{guidance}{fault}\n"),
-        false => format!("{device}: force off{weaker}{guidance}{fault}\n"),
+    if reply.is_on {
+        format!("{device}: force on, {percent} %{guidance}{fault}\n")
+    } else {
+        format!("{device}: force off{weaker}{guidance}{fault}\n")
     }
 }
 

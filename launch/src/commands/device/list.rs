@@ -25,10 +25,9 @@ pub struct ListOptions {
     target: Target,
 }
 
-/// Lists what is attached.
+/// Lists the attached devices.
 ///
-/// # Errors
-/// A [`UserError`] where it cannot be printed.
+/// # Errors A [`UserError`] where it cannot be printed.
 pub(super) fn run(options: &ListOptions) -> Result<i32, UserError> {
     if options.udev {
         print_text(&rules(&hid::devices(&Places::here())))?;
@@ -80,12 +79,10 @@ fn in_words(findings: &DeviceListing) -> String {
             service.address,
         ));
     }
-    // What paints already comes before what might.
+    // Devices in use come before possible ones.
     let is_used = is_used(findings);
-    let mut text = match is_used {
-        true => in_rig(findings.rig.as_deref()) + "\n",
-        false => String::new(),
-    };
+    let in_rig = in_rig(findings.rig.as_deref());
+    let mut text = is_used.then(|| in_rig.clone() + "\n").unwrap_or_default();
     if !rows.is_empty() {
         text += &table(["device", "id", "at", "driver", ""], &rows);
     }
@@ -97,15 +94,12 @@ fn in_words(findings: &DeviceListing) -> String {
     {
         text += &nothing(findings);
     } else {
-        // Rather what paints than what moves the canvas.
+        // Prefer a painting device to one that moves the canvas.
         let usable = all().filter(|device| is_usable(device));
         let device = usable.min_by_key(|device| device.driver == Some("spacemouse"));
         text += &device.map(advice).unwrap_or_default();
     }
-    match is_used {
-        true => text,
-        false => text + "\n" + &in_rig(findings.rig.as_deref()),
-    }
+    if is_used { text } else { text + "\n" + &in_rig }
 }
 
 /// True if a device of the rig has shown itself.
@@ -191,7 +185,7 @@ fn in_rig(used: Option<&[RigDevice]>) -> String {
     let row = |used: &RigDevice| -> Row {
         let state = match (used.trouble.as_str(), used.is_there) {
             ("", true) => "in use",
-            ("", false) => "does not run: the rig's terminal says why",
+            ("", false) => "does not run: see its messages in the rig's terminal",
             (trouble, _) => trouble,
         };
         let own = &used.section;

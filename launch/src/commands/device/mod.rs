@@ -1,4 +1,4 @@
-//! Commands of devices: what is attached, which of it paints, fitting, force.
+//! Commands of devices: attached ones, the painting one, fitting, force.
 
 mod add;
 mod allow;

@@ -24,10 +24,9 @@ const PIXEL_BYTES: u64 = 5 * 3;
 /// A difference that is shown as white, ΔE₀₀.
 const WHITE: f64 = 20.0;
 
-/// Draws `one`, `other` and their difference, left to right, and says how far they are apart.
+/// Draws `one`, `other` and their difference, left to right, and prints their distance.
 ///
-/// # Errors
-/// A [`UserError`] for an unknown version, or a picture that cannot be written.
+/// # Errors A [`UserError`] for an unknown version, or a picture that cannot be written.
 pub(super) fn compare(
     path: &Path,
     [one, other]: [&str; 2],
@@ -87,7 +86,7 @@ pub(super) fn compare(
     Ok(0)
 }
 
-/// The picture of a version; the painting is as it was before.
+/// Picture of a version; the painting is restored afterwards.
 fn seen(sequencer: &mut Sequencer, version: &str) -> Result<Picture, UserError> {
     let is_now = version == NOW;
     if !is_now {

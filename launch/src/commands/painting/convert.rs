@@ -88,7 +88,7 @@ fn converted(
     Ok(applied)
 }
 
-/// Gives a file its name, which no other has.
+/// Gives a file its name, unless that exists.
 fn place(part: &Path, output: &Path) -> Result<(), UserError> {
     let placed = match std::fs::hard_link(part, output) {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {

@@ -21,7 +21,7 @@ use maulstick_painting_setup::surface::tooth::{DEPTH, ToothPicture};
 /// A mean ΔE₀₀ beyond which a picture is another one.
 const FAR: f64 = 15.0;
 
-/// What becomes of a picture.
+/// Purpose of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Purpose {
     /// Paint, mixed for each cell to come nearest to its colour
@@ -63,10 +63,9 @@ pub struct ImportOptions {
     depth_um: f64,
 }
 
-/// Takes a picture into a painting.
+/// Imports a picture into a painting.
 ///
-/// # Errors
-/// A [`UserError`] where picture or painting cannot be read; the painting is as it was then.
+/// # Errors A [`UserError`] where picture or painting cannot be read; the painting is then unchanged.
 pub(super) fn run(options: &ImportOptions) -> Result<i32, UserError> {
     let path = &options.file;
     there(path)?;
@@ -100,9 +99,10 @@ impl ImportOptions {
 
     fn paint(&self, sequencer: &mut Sequencer, image: &Image) -> Result<String, UserError> {
         let painting = sequencer.painting_mut();
-        let paints = match self.paints.is_empty() {
-            true => paints_at_hand(painting),
-            false => self.paints.clone(),
+        let paints = if self.paints.is_empty() {
+            paints_at_hand(painting)
+        } else {
+            self.paints.clone()
         };
         let wrong = |error: ImportError| self.fault(&error);
         let support = Support::of(painting, CANVAS, &paints).map_err(wrong)?;
@@ -155,13 +155,12 @@ impl ImportOptions {
     }
 }
 
-/// What is to be done where the picture is hardly to be recognised.
+/// Advice where the picture is hardly recognisable.
 fn advice(colour_error: &ColourError) -> &'static str {
-    match colour_error.mean > FAR {
-        true => {
-            "; these paints do not make its colours: --paint NAME takes others, and `maulstick colour paints` lists them"
-        }
-        false => "",
+    if colour_error.mean > FAR {
+        "; these paints do not make its colours: --paint NAME takes others, and `maulstick colour paints` lists them"
+    } else {
+        ""
     }
 }
 

@@ -30,10 +30,9 @@ pub struct InfoOptions {
     json: bool,
 }
 
-/// Shows what a painting holds.
+/// Shows the contents of a painting.
 ///
-/// # Errors
-/// A [`UserError`] where it cannot be read, or is damaged.
+/// # Errors A [`UserError`] where it cannot be read, or is damaged.
 pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
     let path = &options.file;
     let mut stats = DocumentStats::read(path).map_err(|error| wrong(path, &error))?;
@@ -72,7 +71,7 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
     Ok(0)
 }
 
-/// What a painting holds.
+/// Contents of a painting.
 struct Info<'a> {
     stats: DocumentStats,
     record: Option<RecordInfo>,
@@ -141,7 +140,7 @@ impl Info<'_> {
         }
         let merged = match self.painting.history().merged() {
             0 | 1 => String::new(),
-            merged => format!(", the oldest of them {merged} in one"),
+            merged => format!(", the {merged} oldest merged into one"),
         };
         let (undo, redo) = self.painting.history_depth();
         say!("history   {undo} steps to undo, {redo} to redo{merged}");

@@ -1,4 +1,4 @@
-//! `maulstick painting log`: who did what in a painting, and when.
+//! `maulstick painting log`: senders, actions and times of a painting.
 
 use std::path::PathBuf;
 
@@ -16,7 +16,7 @@ use crate::commands::table::table;
 use crate::commands::{print_json, print_text};
 use maulstick_painting_setup::document::{read, wrong};
 
-/// Characters of a line of the log at most, but for JSON.
+/// Greatest length of a line of the log, characters, except for JSON.
 const LINE: usize = 160;
 
 /// Options of `maulstick painting log`.
@@ -33,10 +33,9 @@ pub struct LogOptions {
     json: bool,
 }
 
-/// Lists what was done in a painting since its record began.
+/// Lists the actions in a painting since its record began.
 ///
-/// # Errors
-/// A [`UserError`] where it cannot be read, or has no record.
+/// # Errors A [`UserError`] where it cannot be read, or has no record.
 pub(super) fn run(options: &LogOptions) -> Result<i32, UserError> {
     let path = &options.file;
     let mut devices = match &options.rig {

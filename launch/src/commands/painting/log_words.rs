@@ -1,4 +1,4 @@
-//! What a log says: who it was, and what was done, in words.
+//! Texts of a log: names of senders and actions.
 
 use std::collections::BTreeMap;
 
@@ -33,7 +33,7 @@ impl Names {
         }
     }
 
-    /// The device of a hash; one that is not known gets a number.
+    /// The device with a hash; an unknown one gets a number.
     pub(super) fn device(&mut self, hash: u32) -> String {
         match self.devices.get(&hash) {
             Some(name) => name.clone(),
@@ -59,7 +59,7 @@ fn numbered<T: PartialEq>(all: &mut Vec<T>, one: T) -> usize {
     }) + 1
 }
 
-/// What a command does.
+/// Text of a command.
 pub(super) fn words(command: &Command, names: &mut Names) -> String {
     match command {
         Command::Edit(edit) => match edits::read(edit) {
@@ -75,16 +75,17 @@ pub(super) fn words(command: &Command, names: &mut Names) -> String {
         }) => {
             let begins = if *again { "begin again" } else { "begin" };
             let loads: Vec<String> = loads.iter().map(mixture).collect();
-            let loaded = match loads.is_empty() {
-                true => String::new(),
-                false => format!(", loaded with {}", loads.join("; ")),
+            let loaded = if loads.is_empty() {
+                String::new()
+            } else {
+                format!(", loaded with {}", loads.join("; "))
             };
             let device = names.device(*device);
             format!("{begins} a take of {device} with {brush}{loaded}")
         }
         Command::Take(TakeCommand::Mark) => "mark a place".to_owned(),
         Command::Take(TakeCommand::Snapshot { path, .. }) => format!("write a picture: {path}"),
-        // These change no paint and take no place in a record.
+        // These change no paint and are not in a record.
         Command::File(_) => "work on files".to_owned(),
         Command::Brush(_) => "change a brush".to_owned(),
         Command::Rig(_) => "change the rig".to_owned(),

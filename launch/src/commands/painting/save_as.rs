@@ -22,10 +22,9 @@ pub struct SaveAsOptions {
     target: Target,
 }
 
-/// Puts the painting into another file, where it goes on.
+/// Moves the painting to another file, where it continues.
 ///
-/// # Errors
-/// A [`UserError`] where it cannot be written there, or where no rig runs.
+/// # Errors A [`UserError`] where it cannot be written there, or where no rig runs.
 pub fn run(options: &SaveAsOptions) -> Result<i32, UserError> {
     let command = RigCommand::SaveAs(SaveAs {
         path: whole_path(&options.file)?,

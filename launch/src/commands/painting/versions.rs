@@ -49,7 +49,7 @@ pub struct VersionsOptions {
 }
 
 impl VersionsOptions {
-    /// The edit that is asked for, if any.
+    /// The requested edit, if any.
     pub(crate) fn edit(&self) -> Option<Edit> {
         let name = |name: &Option<VersionName>| name.clone();
         let keep = name(&self.keep).map(|name| Keep { name }.into());
@@ -69,10 +69,9 @@ impl VersionsOptions {
     }
 }
 
-/// Lists versions, or does what is asked of them.
+/// Lists versions, or applies the requested edit.
 ///
-/// # Errors
-/// A [`UserError`] for an unknown version, or where there is no painting.
+/// # Errors A [`UserError`] for an unknown version, or where there is no painting.
 pub(super) fn run(options: &VersionsOptions) -> Result<i32, UserError> {
     let edit = options.edit();
     let Some(path) = &options.file else {
@@ -115,7 +114,7 @@ fn list(scene: &Scene, as_json: bool) -> Result<i32, UserError> {
         return Ok(0);
     }
     if scene.versions.is_empty() {
-        say!("no versions yet: --keep NAME keeps the painting as it is");
+        say!("no versions yet: --keep NAME adds one of the current painting");
     }
     let roots = scene
         .versions
@@ -136,7 +135,7 @@ fn show(all: &[NamedVersion], version: &NamedVersion, depth: usize) -> Result<()
     say!("{:indent$}{}{here}", "", version.name, indent = 2 * depth);
     let children = all.iter().filter(|other| other.parent == version.name);
     for child in children {
-        // A chain of parents has no ring: names are unique, and a parent is there before its child.
+        // A chain of parents has no cycle: names are unique, and a parent exists before its child.
         if depth < all.len() {
             show(all, child, depth + 1)?;
         }

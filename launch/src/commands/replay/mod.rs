@@ -73,7 +73,7 @@ pub struct ReplayOptions {
     target: Target,
 }
 
-/// Where a session is painted again.
+/// Options of repainting a session.
 #[derive(Args, Clone, Debug)]
 struct PaintingOptions {
     /// Painting to write, in which a session is painted again [default: RECORDING-replay.maul]
@@ -84,7 +84,7 @@ struct PaintingOptions {
     forget: bool,
 }
 
-/// Where a take is put.
+/// Options of placing a take.
 #[derive(Args, Clone, Copy, Debug)]
 struct PlaceOptions {
     /// Put the middle of a take's strokes here, mm from the middle of the desk [default: where it was]
@@ -181,7 +181,7 @@ pub fn run(options: &ReplayOptions) -> Result<i32, UserError> {
                     player.stop();
                 }
             }
-            // Nobody reads on: the player lifts its hands and leaves.
+            // The reader is gone: the player lifts its hands and leaves.
             if shown.is_err() {
                 player.stop();
             }

@@ -16,10 +16,10 @@ use crate::commands::option_error::{OptionError, number_within};
 const SKIP_S: f64 = 5.0;
 /// Step of a key that changes the strength.
 const STRONGER: f64 = 0.1;
-/// What the keys do.
+/// Help of the keys.
 const KEYS: &str =
     "space: pause   ← →: 5 s   . : next event   + -: faster, slower   0: beginning   q: end";
-/// What the keys do while a hand is guided.
+/// Help of the keys while a hand is guided.
 const GUIDE_KEYS: &str = "space: let go   [ ]: softer, stronger   ← →: 5 s   0: beginning   q: end";
 
 /// Orders as they come.
@@ -28,7 +28,7 @@ pub(super) struct Orders {
     /// True if they are lines of the standard input.
     are_lines: bool,
     orders: Option<UnboundedReceiver<Order>>,
-    /// The terminal as it was.
+    /// The terminal's earlier mode.
     before: Option<Termios>,
 }
 
@@ -54,7 +54,7 @@ impl Orders {
         }
         let (send, orders) = unbounded_channel();
         self.orders = Some(orders);
-        // The system has no other way to wait for either but to block a thread.
+        // The system's only way to wait for either is to block a thread.
         if self.are_lines {
             spawn_blocking(move || read_lines(&send));
         } else if std::io::stdin().is_terminal() {

@@ -1,10 +1,10 @@
-//! Which rig a command is for, and its client there.
+//! The rig of a command, and its client there.
 
 use clap::Args;
 
 pub use maulstick_client::connection::{Client, Feed};
 
-/// Which rig a command is for.
+/// Options that select the rig of a command.
 #[derive(Args, Clone, Debug)]
 pub struct Target {
     /// Name of the rig

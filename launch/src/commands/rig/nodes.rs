@@ -1,4 +1,4 @@
-//! `maulstick node list`: the processes of a running rig, and what they have done.
+//! `maulstick node list`: the processes of a running rig, and their work.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
@@ -25,7 +25,7 @@ pub struct NodesOptions {
     target: Target,
 }
 
-/// Time within which the nodes that live show themselves, and say what they have done.
+/// Time within which live nodes appear with their status.
 const PATIENCE: Duration = Duration::from_nanos(NodeStatus::PERIOD_NS + 300_000_000);
 
 /// Lists them.
@@ -46,9 +46,10 @@ pub fn run(options: &NodesOptions) -> Result<i32, UserError> {
             let Some(name) = topics.node_of(&token.key) else {
                 continue;
             };
-            match token.present {
-                true => nodes.insert(name.to_owned()),
-                false => nodes.remove(name),
+            if token.present {
+                nodes.insert(name.to_owned())
+            } else {
+                nodes.remove(name)
             };
         }
         while let Some(status) = statuses.try_recv() {
@@ -66,9 +67,10 @@ pub fn run(options: &NodesOptions) -> Result<i32, UserError> {
             (name, status)
         })
         .collect();
-    match options.json {
-        true => print_json(&Value::Array(nodes.iter().map(to_json).collect()))?,
-        false => print_text(&to_text(&nodes))?,
+    if options.json {
+        print_json(&Value::Array(nodes.iter().map(to_json).collect()))?
+    } else {
+        print_text(&to_text(&nodes))?
     }
     Ok(0)
 }
@@ -96,7 +98,7 @@ fn to_json((name, status): &(String, Option<NodeStatus>)) -> Value {
     })
 }
 
-/// The table; a node that says nothing has its name alone.
+/// The table; a node without a status has its name alone.
 fn to_text(nodes: &[(String, Option<NodeStatus>)]) -> String {
     let head = [
         "node", "pid", "consumed", "sent", "waiting", "held", "refused", "lost", "too fast",

@@ -6,7 +6,6 @@ use std::fmt::Write as _;
 use maulstick_types::CatalogueEntry;
 use maulstick_types::wire::schema::{Field, Schema, Shape};
 
-/// The reader.
 const READER: &str = include_str!("../../../../msgs/c/maulstick.h");
 
 /// Looks up a message; the tables are static, as the functions of the reader are.
@@ -100,7 +99,7 @@ impl Tables {
         place
     }
 
-    /// A row of a type to be filled in: what is inside it may refer to it.
+    /// Reserves a row for a type, which its fields may refer to before it is complete.
     fn reserve(&mut self) -> usize {
         self.types.push(String::new());
         self.types.len() - 1

@@ -34,13 +34,12 @@ pub struct EchoOptions {
     target: Target,
 }
 
-/// How long `--once` waits for a message.
+/// Longest time that `--once` waits for a message.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Prints messages until Ctrl-C.
 ///
-/// # Errors
-/// A [`UserError`] for a rig that does not run, or a field that a message does not have.
+/// # Errors A [`UserError`] if no rig runs, or for a field that a message lacks.
 pub(super) fn run(options: &EchoOptions) -> Result<i32, UserError> {
     let mut listener = Listener::open(options.target.rig(), &options.topic)?;
     let mut printer = Printer::new(options);

@@ -1,4 +1,4 @@
-//! `maulstick topic list`, `hz` and `latency`: what streams carry, measured for some seconds.
+//! `maulstick topic list`, `hz` and `latency`: streams measured for some seconds.
 
 use std::time::Duration;
 
@@ -34,21 +34,18 @@ pub struct MeasureOptions {
     target: Target,
 }
 
-/// What is measured.
+/// Subject of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Measure {
-    /// Which topics there are.
     Topics,
-    /// How often messages come, and how many are missing.
+    /// Rates of messages, and numbers of missing ones.
     Rates,
-    /// How long they take.
     Delays,
 }
 
 /// Measures and prints.
 ///
-/// # Errors
-/// A [`UserError`] for a rig that does not run, or a time that is none.
+/// # Errors A [`UserError`] if no rig runs, or for a time out of range.
 pub(super) fn run(options: &MeasureOptions, measure: Measure) -> Result<i32, UserError> {
     let time = duration(options.seconds)?;
     let mut listener = Listener::open(options.target.rig(), &options.topic)?;
@@ -138,9 +135,10 @@ fn ms<const N: usize>(times: &Distribution, shares: [f64; N]) -> [String; N] {
             1.0 => times.most(),
             share => times.quantile(share),
         };
-        match times.is_empty() {
-            true => "-".to_owned(),
-            false => format!("{:.2}", ns as f64 * 1e-6),
+        if times.is_empty() {
+            "-".to_owned()
+        } else {
+            format!("{:.2}", ns as f64 * 1e-6)
         }
     })
 }
@@ -148,7 +146,7 @@ fn ms<const N: usize>(times: &Distribution, shares: [f64; N]) -> [String; N] {
 fn shown(traffic: &Traffic, measure: Measure) -> String {
     let streams: Vec<Row<'_>> = traffic.streams().collect();
     if streams.is_empty() {
-        return "nothing came: `maulstick node list` lists who is there\n".into();
+        return "no message arrived: `maulstick node list` lists the running nodes\n".into();
     }
     match measure {
         Measure::Topics => {

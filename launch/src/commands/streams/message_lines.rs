@@ -21,7 +21,7 @@ pub(super) struct MessageLine<'a> {
 }
 
 impl MessageLine<'_> {
-    /// As a line of JSON: all of its fields, or those that are asked for, which are null where it has them not.
+    /// As a line of JSON: all of its fields, or the requested ones, null where absent.
     #[must_use]
     pub(super) fn json(&self, fields: &[String]) -> String {
         let value: Json = match fields {
@@ -42,7 +42,7 @@ impl MessageLine<'_> {
         format!("{line}\n")
     }
 
-    /// As a row of a table whose first columns are [`HEAD`]; empty where it has no such field.
+    /// As a row of a table whose first columns are [`HEAD`]; empty where a field is absent.
     #[must_use]
     pub(super) fn row(&self, columns: &[String]) -> String {
         let Header { seq, event_ns, .. } = self.header;
@@ -67,9 +67,10 @@ pub(super) fn head(columns: &[String]) -> String {
 
 /// A cell of comma-separated values (RFC 4180).
 fn quoted(cell: &str) -> String {
-    match cell.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", cell.replace('"', "\"\"")),
-        false => cell.to_owned(),
+    if cell.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    } else {
+        cell.to_owned()
     }
 }
 

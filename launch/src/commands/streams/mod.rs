@@ -1,11 +1,11 @@
-//! Commands of streams: what a rig's topics carry, live and recorded.
+//! Commands of streams: the topics of a rig, live and recorded.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`echo`], [`measure`] | contents and rates of live streams |
-//! | [`graph`] | the processes of a rig, and what they send each other, as a picture |
-//! | [`record`], [`recorder_words`] | recordings, made and kept within bounds; their events in words |
-//! | [`recording`], [`recording_info`], [`foxglove_export`] | recordings, looked at and written for Foxglove |
+//! | [`graph`] | the processes of a rig, and the streams between them, as a picture |
+//! | [`record`], [`recorder_words`] | recordings within limits; their events in words |
+//! | [`recording`], [`recording_info`], [`foxglove_export`] | recordings shown and exported for Foxglove |
 //! | [`topic`] | the commands of live streams as a group |
 //! | [`bridge`] | live streams for Foxglove |
 //! | [`message_lines`] | messages as rows of a table and as lines of JSON |
@@ -27,7 +27,7 @@ use std::path::Path;
 use maulstick_rig::UserError;
 use mcap::McapError;
 
-/// Why a file could not be written.
+/// The error of a file that could not be written.
 fn fault(path: &Path, error: McapError) -> UserError {
     let error = match error {
         McapError::Io(error) => error,

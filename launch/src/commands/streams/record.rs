@@ -51,8 +51,7 @@ pub struct RecordOptions {
 
 /// Records until Ctrl-C, the end of the time, or that of the rig.
 ///
-/// # Errors
-/// A [`UserError`] where no rig runs, or the file cannot be written: what was written until then can be read.
+/// # Errors A [`UserError`] where no rig runs, or the file cannot be written: its earlier part is readable.
 pub(super) fn run(options: &RecordOptions) -> Result<i32, UserError> {
     print_beside();
     let bounded = |name: &str, seconds: Option<f64>| match seconds {
@@ -103,7 +102,7 @@ pub(super) fn run(options: &RecordOptions) -> Result<i32, UserError> {
                 },
                 _ = signals.next() => recorder.stop(),
             }
-            // Nobody reads on: the file is finished.
+            // The reader is gone: the file is finished.
             if shown.is_err() {
                 recorder.stop();
             }

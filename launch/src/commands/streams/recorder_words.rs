@@ -9,7 +9,6 @@ use crate::commands::{print_json_line, say};
 /// Form in which the events of a recorder are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LogFormat {
-    /// Lines for people.
     Words,
     /// Lines of JSON for programs.
     Json,
@@ -66,12 +65,12 @@ fn in_words(event: &RecorderEvent) -> String {
             file,
             cause: Continuation::JournalBroke,
         } => format!(
-            "the painting's journal broke off: the paint node began anew, or messages were lost; recording into {}",
+            "the painting's journal was interrupted: the paint node restarted, or messages were lost; the recording continues in {}",
             file.display()
         ),
         RecorderEvent::PaintingAttached { file } => format!("{} has the painting", file.display()),
         RecorderEvent::PaintingUnavailable(trouble) => format!(
-            "without the painting, {}: until it is there, nothing can be painted again from this recording",
+            "without the painting, {}: until it is recorded, nothing can be painted again from this recording",
             trouble_in_words(trouble)
         ),
         RecorderEvent::FileEnded(FileSummary {

@@ -1,4 +1,4 @@
-//! `maulstick recording`: recordings made and replayed; what one holds, and its messages for other programs.
+//! `maulstick recording`: making and replaying recordings; their contents, and their messages for other programs.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write as _;
@@ -85,8 +85,7 @@ enum Form {
 
 /// Runs the subcommand.
 ///
-/// # Errors
-/// A [`UserError`] for a file that cannot be read or written, a topic that it does not hold.
+/// # Errors A [`UserError`] for a file that cannot be read or written, or an absent topic.
 pub fn run(command: &RecordingCommand) -> Result<i32, UserError> {
     match command {
         RecordingCommand::Record(options) => record::run(options),
@@ -156,7 +155,7 @@ impl ExportOptions {
         }
     }
 
-    /// The topics that are exported. Among others, messages that nobody can read are passed by.
+    /// The topics to export. Of several, those without a readable schema are skipped.
     fn topics(&self, recording: &mut Recording) -> Result<BTreeMap<u16, Topic>, UserError> {
         let chosen = recording.topics().iter();
         let chosen = chosen.filter(|(_, topic)| matches(&self.topic, &topic.name));
@@ -166,7 +165,7 @@ impl ExportOptions {
             .partition(|(_, topic)| is_one || topic.table.is_ok());
         for topic in unread.values() {
             say!(
-                "without {}: nothing here tells how its messages are read",
+                "without {}: the schema of its messages is not in this recording",
                 topic.name
             );
         }

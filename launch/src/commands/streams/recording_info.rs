@@ -16,10 +16,9 @@ use crate::commands::{print_json, print_text, say};
 /// The whole of a recording.
 const WHOLE: [u64; 2] = [0, u64::MAX];
 
-/// Shows what a recording holds.
+/// Shows the contents of a recording.
 ///
-/// # Errors
-/// A [`UserError`] for a file that cannot be read.
+/// # Errors A [`UserError`] for a file that cannot be read.
 pub(super) fn info(path: &Path, as_json: bool) -> Result<i32, UserError> {
     let mut recording = Recording::open(path)?;
     let facts = recording.notes().get("recording").cloned();
@@ -76,7 +75,7 @@ pub(super) fn info(path: &Path, as_json: bool) -> Result<i32, UserError> {
     Ok(0)
 }
 
-/// What was sent on each topic, since a time of the rig's clock, ns.
+/// Traffic on each topic, since a time of the rig's clock, ns.
 fn traffic(recording: &mut Recording, since_ns: u64) -> Result<Traffic, UserError> {
     let mut traffic = Traffic::since(since_ns);
     let topics = recording.topics().clone();
@@ -153,7 +152,7 @@ fn foreign_row(topic: &ForeignTopic) -> [String; 7] {
     ]
 }
 
-/// A topic, whoever sent it: a process that was started again counts as another sender.
+/// A topic over all its senders: a restarted process counts as another sender.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct TopicTotal {
     senders: u64,

@@ -1,4 +1,4 @@
-//! `maulstick topic`: what a running rig sends.
+//! `maulstick topic`: live streams of a running rig.
 
 use clap::Subcommand;
 use maulstick_rig::UserError;
@@ -27,8 +27,7 @@ pub enum TopicCommand {
 
 /// Runs the command.
 ///
-/// # Errors
-/// A [`UserError`] for a rig that does not run, or an option out of range.
+/// # Errors A [`UserError`] if no rig runs, or for an option out of range.
 pub fn run(command: &TopicCommand) -> Result<i32, UserError> {
     match command {
         TopicCommand::List(options) => measure::run(options, Measure::Topics),

@@ -1,4 +1,4 @@
-//! `maulstick take from`: a recorded session, or what a painting was painted with, as a take that is painted again.
+//! `maulstick take from`: makes a take of a recorded session, or of a painting's record.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -41,7 +41,7 @@ pub struct FromOptions {
     end: Option<f64>,
 }
 
-/// Topics whose last message holds until another comes, of those that a take keeps beside what the painting accepted.
+/// Topics whose last message stays valid until the next, among those of a take beside the accepted records.
 const RARE: [&str; 3] = ["stylus/*/info", "brush/*/def", "scene"];
 /// Topics of the hands, which a take keeps too.
 const HANDS: &str = "stylus/*/sample";
@@ -52,8 +52,7 @@ fn is_rare(topic: &str) -> bool {
 
 /// Makes a take of a session.
 ///
-/// # Errors
-/// A [`UserError`] where the recording lacks something, or the take cannot be written.
+/// # Errors A [`UserError`] where the recording is incomplete, or the take cannot be written.
 pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
     let path = &options.recording;
     let mut session = Source::open(path)?;
@@ -198,7 +197,7 @@ impl Source {
         }
     }
 
-    /// Its length, and where it goes on.
+    /// Text of its length, and of its continuation.
     fn length_in_words(&self) -> String {
         let length_s = self.length_ns() as f64 * 1e-9;
         let next = match self {
@@ -207,7 +206,7 @@ impl Source {
         };
         match next {
             Some(next) => {
-                format!("it is {length_s:.1} s long, and the recording goes on in {next}")
+                format!("it is {length_s:.1} s long, and the recording continues in {next}")
             }
             None => format!("it is {length_s:.1} s long"),
         }
@@ -235,7 +234,7 @@ impl Source {
         }
     }
 
-    /// What a take of it begins with, but for the painting.
+    /// Beginning of its take, without the painting.
     fn origin(&self) -> Result<TakeOrigin, UserError> {
         match self {
             Self::Session(session) => origin_of(session),
@@ -244,7 +243,7 @@ impl Source {
     }
 }
 
-/// What a take of a session begins with, but for the painting.
+/// Beginning of a session's take, without the painting.
 fn origin_of(session: &SessionFile) -> Result<TakeOrigin, UserError> {
     let recording = &session.recording;
     let mut notes = recording.notes().clone();
@@ -267,7 +266,7 @@ fn origin_of(session: &SessionFile) -> Result<TakeOrigin, UserError> {
     })
 }
 
-/// What a session holds.
+/// Contents of a session.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Counts {
     states: u64,

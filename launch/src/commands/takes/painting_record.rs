@@ -1,4 +1,4 @@
-//! The record of a painting as a session: what was accepted since its beginning, at the time of the work.
+//! The record of a painting as a session: records accepted since its beginning, in working time.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ pub(super) struct PaintingRecord {
     path: PathBuf,
     /// A copy of it.
     document: Document,
-    /// Another copy, which is to be the painting as it was at the beginning.
+    /// Another copy, for the painting at the beginning.
     begin: PathBuf,
     _folder: tempfile::TempDir,
     /// Serial number of the first message.
@@ -31,9 +31,9 @@ pub(super) struct PaintingRecord {
     length_ns: u64,
 }
 
-/// How reading ends early.
+/// Reason to stop reading early.
 enum Halt {
-    /// All that was asked for was read.
+    /// The requested part was read.
     Done,
     Fault(UserError),
     Document(DocumentError),
@@ -51,7 +51,7 @@ impl PaintingRecord {
     /// # Errors
     /// A [`UserError`] where it cannot be read, or has no record.
     pub(super) fn open(path: &Path) -> Result<Self, UserError> {
-        // Says so where it is open in another program.
+        // Fails where it is open in another program.
         let (document, opened) = read(path)?;
         drop(opened);
         document.close().map_err(|error| wrong(path, &error))?;
@@ -87,24 +87,21 @@ impl PaintingRecord {
         self.length_ns
     }
 
-    /// Puts the painting as it was at the beginning, once, where no file is yet.
+    /// Writes the painting at the beginning, once, to a new file.
     ///
-    /// # Errors
-    /// A [`UserError`] where it cannot be read or written.
+    /// # Errors A [`UserError`] where it cannot be read or written.
     pub(super) fn write_painting(&self, to: &Path) -> Result<(), UserError> {
         let failed = |error| wrong(&self.path, &error);
-        match record::rewind(&self.begin).map_err(failed)? {
-            true => {
-                std::fs::rename(&self.begin, to).map_err(|error| UserError::writing(to, &error))
-            }
-            false => Err(no_record(&self.path)),
+        if record::rewind(&self.begin).map_err(failed)? {
+            std::fs::rename(&self.begin, to).map_err(|error| UserError::writing(to, &error))
+        } else {
+            Err(no_record(&self.path))
         }
     }
 
-    /// Has `each` see what was accepted after `sequencer`, up to so much working time: the time, ns, and the event.
+    /// Passes the records accepted after `sequencer` to `each`, up to a working time, with the time, ns.
     ///
-    /// # Errors
-    /// A [`UserError`] where the record is not intact; that of `each`.
+    /// # Errors A [`UserError`] where the record is not intact; that of `each`.
     pub(super) fn follow(
         &self,
         sequencer: &mut Sequencer,
@@ -129,7 +126,7 @@ impl PaintingRecord {
         }
     }
 
-    /// What a take of it begins with, but for the painting.
+    /// Beginning of its take, without the painting.
     pub(super) fn origin(&self) -> TakeOrigin {
         let facts = [
             ("version", env!("CARGO_PKG_VERSION").to_owned()),

@@ -28,7 +28,7 @@ use maulstick_script::ScriptRunner;
 use maulstick_script::{Act, Script, advice};
 
 impl RenderOptions {
-    /// The files that are read, but for those that the script names.
+    /// The files that are read, except those named by the script.
     fn inputs(&self, config: &RigConfig) -> Vec<UsedFile> {
         let document = self.document.iter();
         named_by(config)
@@ -58,7 +58,7 @@ impl RenderOptions {
         }
     }
 
-    /// The files that are written, but for the painting.
+    /// The files that are written, except the painting.
     fn outputs(&self) -> Vec<UsedFile> {
         std::iter::once(UsedFile::new("the picture", &self.output).of(Kind::Png))
             .chain(UsedFile::written(
@@ -69,7 +69,7 @@ impl RenderOptions {
             .collect()
     }
 
-    /// Refuses options that would do nothing.
+    /// Rejects options without effect.
     fn check_idle(&self) -> Result<(), UserError> {
         let painting = &self.painting;
         if self.until.is_some() {
@@ -96,7 +96,7 @@ impl RenderOptions {
     }
 }
 
-/// Says how many samples were faster than a hand: strokes have gaps there.
+/// Prints the number of samples that were faster than a hand, where strokes have gaps.
 fn tell_haste(too_fast: u64) {
     if too_fast > 0 {
         eprintln!(
@@ -108,12 +108,15 @@ fn tell_haste(too_fast: u64) {
 
 /// Reads a take; a script in its place is refused with advice.
 fn read_take(path: &Path) -> Result<Take, UserError> {
-    Take::read(path).map_err(|fault| match ending(path) == "toml" && path.exists() {
-        true => fault.help(format!(
-            "a script is painted with `--script {}`",
-            path.display()
-        )),
-        false => fault,
+    Take::read(path).map_err(|fault| {
+        if ending(path) == "toml" && path.exists() {
+            fault.help(format!(
+                "a script is painted with `--script {}`",
+                path.display()
+            ))
+        } else {
+            fault
+        }
     })
 }
 
@@ -153,7 +156,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, UserError> {
         _ => None,
     };
     let library = match &begun {
-        // It has paints of its own.
+        // It has its own paints.
         Some((_, sequencer, _)) => sequencer.painting().library().clone(),
         None => library_from(config.paint.paints.as_deref())?,
     };
@@ -213,7 +216,7 @@ impl RenderOptions {
         Ok(())
     }
 
-    /// The painting that is painted in, and what saves it where it is in a file.
+    /// The painting to paint in, and its autosave if it is in a file.
     fn sequencer(
         &self,
         config: &RigConfig,

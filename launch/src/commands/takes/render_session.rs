@@ -1,4 +1,4 @@
-//! `maulstick render` of a session: what its painting accepted, accepted again.
+//! `maulstick render` of a session: accepts its records again.
 
 use std::time::Instant;
 
@@ -18,8 +18,8 @@ use maulstick_painting_setup::{KitOptions, refused};
 
 /// Paints a session.
 ///
-/// # Errors
-/// A [`UserError`] where something is missing in it, for options that do not apply, or where a file cannot be written.
+/// # Errors A [`UserError`] for an incomplete session, for options that do not apply, or where a file cannot be
+/// written.
 pub(super) fn render_session(
     options: &RenderOptions,
     mut session: SessionFile,
@@ -29,23 +29,23 @@ pub(super) fn render_session(
     let sizes = [&painting.memory, &painting.history, &painting.record];
     let is_sized = sizes.iter().any(|size| size.is_some());
     if painting.kit != KitOptions::default() || painting.model.is_some() || is_sized {
-        return Err(UserError::usage("a session is painted with what it was painted with")
+        return Err(UserError::usage("a session is painted with its own brushes and paints")
             .help("leave out canvas, brush, loads, paints, light, model and sizes: only --profile, --gamut, --backend, --document and --ledger apply"));
     }
     let export = export(&config.view, "--profile, --gamut")?;
     let folder = tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
     let path = match &options.document {
         Some(path) if presence(path, painting)? == Presence::There => {
-            return Err(UserError::usage("a session has a painting of its own")
+            return Err(UserError::usage("a session has its own painting")
                 .at(path.display().to_string())
-                .help("give a name that is not there yet"));
+                .help("give the name of a new file"));
         }
         Some(path) => path.clone(),
         None => folder.path().join(PAINTING),
     };
     session.write_painting(&path)?;
     let (document, mut sequencer, since) = open_begin(&path)?;
-    // What is decided here is another entry of the journal.
+    // New decisions would be additional entries of the journal.
     let recorded = RecordedSession::after(&sequencer).until(options.until.unwrap_or(u64::MAX));
     let backend = painting.backend.as_ref().unwrap_or(&config.paint.backend);
     choose_backend(&mut sequencer, backend)?;

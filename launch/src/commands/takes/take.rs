@@ -1,4 +1,4 @@
-//! `maulstick take`: takes made, painted, looked at, and the intact part of a damaged one.
+//! `maulstick take`: making, painting and showing takes, and the intact part of a damaged one.
 
 use std::collections::BTreeMap;
 use std::io::Error;
@@ -30,7 +30,7 @@ use maulstick_painting_setup::{KitOptions, library_from, painting_setup, refused
 
 /// Topics of the hands.
 const HANDS: &str = "stylus/*/sample";
-/// What is said of a file without damage.
+/// Message for a file without damage.
 const WHOLE: &str = "nothing was damaged";
 
 /// Subcommands of `maulstick take`.
@@ -81,7 +81,7 @@ pub struct EmbedOptions {
     kit: KitOptions,
 }
 
-/// Embeds what a take is painted with.
+/// Embeds the setup of a take.
 fn embed(options: &EmbedOptions) -> Result<i32, UserError> {
     let mut config = match &options.rig {
         Some(path) => RigConfig::read(path)?,
@@ -114,9 +114,10 @@ fn embed(options: &EmbedOptions) -> Result<i32, UserError> {
 /// Setup embedded in a take, in words; empty if there is none.
 fn kit_in_words(kit: &TakeSetup) -> String {
     let bytes: usize = kit.files.values().map(Vec::len).sum();
-    let loads = match kit.loads.is_empty() {
-        true => "no load".to_owned(),
-        false => kit.loads.join("; "),
+    let loads = if kit.loads.is_empty() {
+        "no load".to_owned()
+    } else {
+        kit.loads.join("; ")
     };
     format!(
         "canvas, brush, paints and light ({:.1} kB); {loads}",
@@ -124,7 +125,7 @@ fn kit_in_words(kit: &TakeSetup) -> String {
     )
 }
 
-/// Shows what a session holds, once all of it was found.
+/// Shows the contents of a complete session.
 fn session_info(mut session: SessionFile, as_json: bool) -> Result<i32, UserError> {
     let folder = tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
     let begin = folder.path().join(PAINTING);
@@ -209,7 +210,7 @@ pub fn run(command: &TakeCommand) -> Result<i32, UserError> {
     }
 }
 
-/// Recovers what can be read of a damaged file.
+/// Recovers the readable part of a damaged file.
 fn recover(from: &Path, output: &Path) -> Result<i32, UserError> {
     check_outputs(
         &[UsedFile::new("the recovered file", output).of(Kind::Take)],

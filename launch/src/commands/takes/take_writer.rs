@@ -1,4 +1,4 @@
-//! A take of a session: the painting at its beginning, what was accepted since, and the samples of the hands.
+//! A take of a session: the painting at its beginning, the records accepted since, and the samples of the hands.
 
 use std::collections::BTreeMap;
 use std::io::{Error, Result, Seek, Write};
@@ -10,14 +10,14 @@ use maulstick_streams::recording::RecordedMessage;
 use maulstick_types::paint::{Entry, JournalEntry};
 use maulstick_types::{Flags, Header, Message, Origin, encode, name_hash};
 
-/// What a take begins with.
+/// Beginning of a take.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TakeOrigin {
-    /// What it says of itself, by name.
+    /// Notes by name.
     pub(super) notes: BTreeMap<String, BTreeMap<String, String>>,
     /// Files that it holds, by name, the painting among them.
     pub(super) files: BTreeMap<String, Vec<u8>>,
-    /// Names of the brushes that are known at its beginning.
+    /// Names of the brushes known at its beginning.
     pub(super) brushes: Vec<String>,
 }
 
@@ -56,7 +56,7 @@ impl<W: Write + Seek> TakeWriter<W> {
         })
     }
 
-    /// Writes what the painting accepted. One entry names states that follow each other.
+    /// Writes accepted records. One entry names consecutive states.
     pub(super) fn accepted(&mut self, at_ns: u64, record: &Record) -> Result<()> {
         let (header, state) = match &record.what {
             Accepted::State { header, state } => (header, state),
@@ -119,7 +119,7 @@ impl<W: Write + Seek> TakeWriter<W> {
         self.message(JOURNAL, &header, &JournalEntry { index, entry }, at_ns)
     }
 
-    /// Writes a message as it was recorded.
+    /// Writes a message as recorded.
     pub(super) fn as_it_was(
         &mut self,
         topic: &str,

@@ -17,7 +17,7 @@ use crate::up::processes::Ended;
 const STILL_THERE: Duration = Duration::from_millis(20);
 
 impl Supervisor {
-    /// Carries out what is to be done with processes.
+    /// Carries out actions on processes.
     pub(super) fn carry_out(
         &mut self,
         actions: Vec<Action>,
@@ -28,7 +28,7 @@ impl Supervisor {
                 Action::Start(name) => {
                     let node = self.crew.find(&name);
                     let is_paint = node.is_some_and(|node| node.spec.role == Role::Paint);
-                    // A painting in a document comes back with what its brushes carry.
+                    // A painting in a document restores the loads of its brushes.
                     self.loads.are_due |= is_paint && self.settings.config.paint.document.is_none();
                     self.start_node(&name, now)?;
                 }
@@ -100,7 +100,7 @@ impl Supervisor {
         }
     }
 
-    /// A take whose brush or paint died is played again from its start; what was painted of it goes.
+    /// Plays a take again from its start after a crash of its brush or paint; its paint is undone.
     fn play_again(&mut self, role: Role, now: Instant) -> Result<(), UserError> {
         if role == Role::Window || role.is_spare() {
             return Ok(());
@@ -114,7 +114,7 @@ impl Supervisor {
         Ok(())
     }
 
-    /// A node that was asked to end has ended, or the paint node while it opened another painting.
+    /// Handles the requested end of a node, or the end of the paint node while it opened another painting.
     fn has_left(&mut self, name: &str, ended: Ended, now: Instant) -> Result<(), UserError> {
         let Some(node) = self.crew.find(name) else {
             return Ok(());
@@ -140,7 +140,7 @@ impl Supervisor {
         }
     }
 
-    /// Starts the paint node; what was in memory alone is gone, and its brushes are loaded anew.
+    /// Starts the paint node; a painting in memory is lost, and its brushes are loaded again.
     fn start_paint(&mut self, now: Instant) -> Result<(), UserError> {
         self.loads.are_due |= self.settings.config.paint.document.is_none();
         match self.paint_name() {
@@ -154,10 +154,10 @@ impl Supervisor {
         paint.map(|paint| paint.spec.name.clone())
     }
 
-    /// Goes on with a switch to another painting as far as that is possible now.
+    /// Continues a switch to another painting as far as possible now.
     pub(super) fn follow_switch(&mut self, now: Instant) -> Result<(), UserError> {
         while let Some((asker, outcome)) = self.checks.next() {
-            // That of a request which was given up is nobody's.
+            // A request that was given up has no client.
             if asker == self.switch.asker() {
                 let outcome = self.checked(outcome);
                 self.switch_on(outcome, now)?;
@@ -185,7 +185,7 @@ impl Supervisor {
         SwitchEvent::Checked(may.map(|()| plan.clone()))
     }
 
-    /// Hands an event to the switch, and carries out what it asks for.
+    /// Passes an event to the switch, and carries out its actions.
     pub(super) fn switch_on(&mut self, event: SwitchEvent, now: Instant) -> Result<(), UserError> {
         let config = &self.settings.config;
         let mut actions = VecDeque::from(self.switch.on(event, config, now));
@@ -198,7 +198,7 @@ impl Supervisor {
         Ok(())
     }
 
-    /// Carries out an action of the switch; returned is what comes of it.
+    /// Carries out an action of the switch; returns the resulting event.
     fn switch_action(
         &mut self,
         action: SwitchAction,

@@ -1,4 +1,4 @@
-//! Checks of another painting, and its saving, beside the supervisor: both may wait for a disk, or for the paint node.
+//! Checking and saving of paintings in the background, because both may wait for a disk, or for the paint node.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -32,7 +32,7 @@ pub(super) struct Checks {
 }
 
 impl Checks {
-    /// Work that rings `wake` when it is done.
+    /// Background work that rings `wake` when it is done.
     pub(super) fn new(wake: &Wake) -> Self {
         let (send, outcomes) = mpsc::channel();
         Self {
@@ -42,7 +42,7 @@ impl Checks {
         }
     }
 
-    /// An outcome that has come, and who asked for it.
+    /// A finished result with its client.
     pub(super) fn next(&self) -> Option<(Asker, SwitchEvent)> {
         self.outcomes.try_recv().ok()
     }
@@ -74,7 +74,7 @@ impl Checks {
         });
     }
 
-    /// Has the paint node put the painting in another file, until it has ended, or the rig does.
+    /// Makes the paint node move the painting to another file, until it has ended, or the rig does.
     pub(super) fn save(
         &self,
         asker: Asker,
@@ -96,7 +96,7 @@ impl Checks {
     }
 }
 
-/// The way of an outcome to the supervisor; dropped by a panic it says so.
+/// Channel of a result to the supervisor; dropping it in a panic reports that.
 struct Report {
     asker: Asker,
     send: mpsc::Sender<(Asker, SwitchEvent)>,
@@ -118,7 +118,7 @@ impl Drop for Report {
     }
 }
 
-/// Sees that a painting can go on, and what is painted on.
+/// Checks that a painting can be opened, and reads its canvas.
 fn opened(config: &mut RigConfig, path: PathBuf) -> Result<(), UserError> {
     if !path.exists() {
         return Err(wrong(&path, &DocumentError::Missing));
@@ -131,7 +131,7 @@ fn opened(config: &mut RigConfig, path: PathBuf) -> Result<(), UserError> {
     Ok(())
 }
 
-/// Sees that a painting can be begun, and what its brushes carry then.
+/// Checks that a painting can be created, and returns the load of its brushes.
 fn begun(
     config: &mut RigConfig,
     path: Option<PathBuf>,
@@ -140,7 +140,7 @@ fn begun(
     if is_path(&canvas.ground) && !Path::new(canvas.ground.as_str()).is_absolute() {
         return Err(
             UserError::usage("the path of the ground does not begin at the root")
-                .help("give the whole path, for each program has a folder of its own"),
+                .help("give the whole path, because each program has its own working folder"),
         );
     }
     let section = &mut config.canvas;

@@ -1,5 +1,5 @@
-//! The nodes of a rig as a state machine: it takes what happens to their processes and tokens, and returns what is to be
-//! done. It starts and signals nothing itself, and reads no clock.
+//! The nodes of a rig as a state machine: its inputs are events of processes and tokens, its outputs actions. It starts
+//! and signals nothing itself, and reads no clock.
 
 use std::time::{Duration, Instant};
 
@@ -11,13 +11,12 @@ use crate::up::processes::Ended;
 
 /// Pause before a node is started again.
 const RESTART_PAUSE: Duration = Duration::from_millis(200);
-/// A node whose token is gone for so long is taken for frozen.
+/// Time without a token after which a node counts as frozen.
 const FROZEN: Duration = Duration::from_secs(5);
 
-/// What is to be done with the process of a node, by its name.
+/// Action on the process of a node, by its name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Action {
-    /// Start it.
     Start(String),
     /// Ask it to end.
     Terminate(String),
@@ -25,12 +24,11 @@ pub(super) enum Action {
     Kill(String),
 }
 
-/// What follows from the end of a node.
+/// Consequence of a node's end.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Exit {
-    /// The rig goes on without it.
+    /// The rig continues without it.
     Rests,
-    /// It is started again.
     Restarts,
     /// The rig ends with this code.
     EndsRig(i32),
@@ -75,7 +73,7 @@ impl Crew {
         nodes.all(|node| !matches!(node.state, State::Starting | State::Restarting))
     }
 
-    /// Takes a node in, in the place of one of its name.
+    /// Adds a node, replacing one of its name.
     pub(super) fn put(&mut self, spec: NodeSpec) {
         match self.find(&spec.name) {
             Some(node) => node.spec = spec,
@@ -93,7 +91,7 @@ impl Crew {
         }
     }
 
-    /// Asks a node to end, to be started afresh; none where it does not run.
+    /// Asks a node to end, to be restarted; `None` where it does not run.
     pub(super) fn renew(&mut self, name: &str, now: Instant) -> Option<Action> {
         let node = self.find(name).filter(|node| node.pid.is_some())?;
         (node.leaving_since, node.due) = (Some(now), None);
@@ -101,7 +99,7 @@ impl Crew {
         Some(Action::Terminate(name.to_owned()))
     }
 
-    /// Asks all nodes of a role to end, to be started afresh.
+    /// Asks all nodes of a role to end, to be restarted.
     pub(super) fn renew_all(&mut self, role: Role, now: Instant) -> Vec<Action> {
         let of_role = self.nodes.iter().filter(|node| node.spec.role == role);
         let names: Vec<String> = of_role.map(|node| node.spec.name.clone()).collect();
@@ -109,7 +107,7 @@ impl Crew {
         renewed.collect()
     }
 
-    /// A node ended that nobody asked to; `hands` tells whether a player is in the place of devices.
+    /// Handles an unrequested end of a node; `hands` tells whether a player replaces the devices.
     pub(super) fn ended(&mut self, name: &str, ended: Ended, hands: Hands, now: Instant) -> Exit {
         let Self { nodes, failures } = self;
         let Some(node) = nodes.iter_mut().find(|node| node.spec.name == name) else {
@@ -126,7 +124,7 @@ impl Crew {
             }
             Ended::Refused(code) if role == Role::Player => return Exit::EndsRig(code),
             Ended::Refused(_) => node.state = State::Failed,
-            // A node that somebody stopped is missed like one that crashed.
+            // A stopped node is handled like one that crashed.
             Ended::Well | Ended::Badly => {
                 let too_often = failures.count(name, now);
                 if node.may_restart() && !too_often {
@@ -148,16 +146,15 @@ impl Crew {
         } else {
             Exit::Fails(
                 UserError::failure(format!("node '{name}' does not stay up")).help(
-                    "its own messages above say why; three failures in ten seconds are the limit",
+                    "its messages above give the reason; three failures in ten seconds are the limit",
                 ),
             )
         }
     }
 
-    /// The system did not start a node: where it may help it is tried again later, and the others paint on.
+    /// The system refused to start a node: where a retry may help it follows later, and the others continue.
     ///
-    /// # Errors
-    /// The fault, where that does not help a node that the rig cannot do without.
+    /// # Errors The fault, where the node is indispensable and a retry does not help.
     pub(super) fn put_off(
         &mut self,
         name: &str,
@@ -180,8 +177,8 @@ impl Crew {
         }
     }
 
-    /// What time alone asks for: nodes that are due are started, and those that do not answer, get ready or leave in time are
-    /// killed. A painting that is being `opened` has its own time.
+    /// Actions whose time has come: starts of nodes that are due, and kills of those that do not answer, get ready or
+    /// leave in time. A painting that is being `opened` has its own time.
     pub(super) fn look(
         &mut self,
         now: Instant,
@@ -205,7 +202,7 @@ impl Crew {
         self.nodes.iter().filter_map(|node| node.due).min()
     }
 
-    /// A take is played again from its start: what paints it is killed and started afresh, and the player made anew.
+    /// Restarts a take: its brush and paint are killed and restarted, and the player is made again.
     pub(super) fn play_again(&mut self, now: Instant) -> Vec<Action> {
         let again = |node: &&mut Node| {
             matches!(node.spec.role, Role::Paint | Role::Brush | Role::Player) && node.pid.is_some()
@@ -220,7 +217,7 @@ impl Crew {
         actions
     }
 
-    /// Gives all nodes so much more time.
+    /// Extends the deadlines of all nodes.
     pub(super) fn postpone(&mut self, by: Duration) {
         self.nodes.iter_mut().for_each(|node| node.postpone(by));
     }
@@ -243,7 +240,7 @@ fn is_overdue(node: &mut Node, now: Instant, config: &RigConfig, opened: Option<
         node.started = None;
         return true;
     }
-    // Paint still writes.
+    // Paint is still writing.
     role != Role::Paint && passed(node.leaving_since, FROZEN)
 }
 

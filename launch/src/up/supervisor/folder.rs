@@ -1,5 +1,5 @@
-//! Check for the rig's folder: if somebody removes it, the processes go on, but nobody finds them. Sockets that are removed
-//! from it are put back.
+//! Check of the rig's folder: if it is removed, the processes continue, but cannot be found. Removed sockets are
+//! restored.
 
 use std::time::{Duration, Instant};
 
@@ -11,7 +11,7 @@ use crate::up::plan::Role;
 
 /// Interval of the check.
 const PERIOD: Duration = Duration::from_secs(1);
-/// Interval at which all that is in the folder is touched: cleaners take what is days old.
+/// Interval at which the files of the folder are touched, because cleaners remove files that are days old.
 const TOUCH: Duration = Duration::from_secs(600);
 
 /// Times of the last check and touch, and true once the loss was reported.
@@ -37,8 +37,8 @@ impl FolderWatch {
         }
     }
 
-    /// Where it is time: puts removed sockets back, and says once that the folder, or its lock, is gone. Returned are nodes
-    /// whose sockets are gone for good, and that lose nothing by a new start.
+    /// If due, restores removed sockets, and reports once that the folder, or its lock, is gone. Returns nodes whose
+    /// sockets are gone for good, and that lose nothing by a restart.
     pub(super) fn watch(
         &mut self,
         folder: &RigFolder,
@@ -92,7 +92,7 @@ impl FolderWatch {
         is_due
     }
 
-    /// Makes it time to look.
+    /// Makes the check due.
     pub(super) fn hasten(&mut self) {
         self.looked = None;
     }
@@ -106,7 +106,7 @@ impl FolderWatch {
         }
         self.sockets.look().unwrap_or_else(|error| {
             if !std::mem::replace(&mut self.unkept, true) {
-                tracing::warn!("the sockets of the rig cannot be looked after: {error}");
+                tracing::warn!("the folder of the rig's sockets cannot be watched: {error}");
             }
             SocketNews::default()
         })

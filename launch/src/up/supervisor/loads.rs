@@ -18,14 +18,14 @@ const LOAD_TIME: Duration = Duration::from_secs(10);
 /// Loads of the brushes.
 #[derive(Debug)]
 pub(super) struct Loads {
-    /// The load of a new painting's brushes; none where they carry what they carried.
+    /// The load of a new painting's brushes; `None` where they keep theirs.
     pub(super) first: Option<Mixture>,
     /// True while paint has clean brushes, or is about to start with them: the painter's are to be loaded.
     pub(super) are_due: bool,
 }
 
 impl Loads {
-    /// Gives the painter loaded brushes, where they are due. The commands run by themselves: nothing waits for them.
+    /// Loads the painter's brushes, if due. The commands run in the background.
     pub(super) fn send(
         &mut self,
         bus: &Arc<dyn Bus>,

@@ -1,4 +1,4 @@
-//! One node of a rig, as the launcher sees it.
+//! One node of a rig, for the launcher.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
@@ -65,7 +65,7 @@ pub(in crate::up) struct Node {
     pub(super) started: Option<Instant>,
     /// Time since when its token is missed.
     pub(super) missed: Option<Instant>,
-    /// Time since when it is asked to end, to be started afresh.
+    /// Time of the request to end for a restart.
     pub(super) leaving_since: Option<Instant>,
     /// Time at which it is started again.
     pub(super) due: Option<Instant>,
@@ -121,7 +121,7 @@ impl Node {
         }
     }
 
-    /// Gives it so much more time: the launcher stood still itself.
+    /// Extends its deadline: the launcher was stopped itself.
     pub(super) fn postpone(&mut self, by: Duration) {
         for since in [&mut self.missed, &mut self.leaving_since, &mut self.started] {
             *since = since.map(|since| since + by);
@@ -129,7 +129,7 @@ impl Node {
     }
 }
 
-/// Times at which nodes failed, by name: a node that is made anew is not forgiven what it did before.
+/// Times at which nodes failed, by name, kept for nodes that are made again.
 #[derive(Debug, Default)]
 pub(super) struct Failures(BTreeMap<String, VecDeque<Instant>>);
 

@@ -16,7 +16,7 @@ use maulstick_types::{Origin, name_hash};
 
 use crate::up::plan::Hands;
 
-/// Requests that wait, at most.
+/// Greatest number of waiting requests.
 const QUEUED: usize = 64;
 
 /// Requests to the rig, and its replies.
@@ -73,8 +73,8 @@ impl Orders {
         }
     }
 
-    /// Takes in the statuses of the paint node: the file in which the painting is, where two after each other name it. One
-    /// alone may be of the node before.
+    /// Reads the statuses of the paint node: returns the painting's file, once two in a row name it. One alone may be
+    /// from the previous node.
     pub(super) fn follow_paint(&mut self) -> Option<PathBuf> {
         let mut file = None;
         while let Some(status) = self.statuses.try_recv() {
@@ -89,15 +89,14 @@ impl Orders {
         file
     }
 
-    /// A request is carried out: who else wants to leave asks again.
+    /// Marks a request as carried out; other clients that want to leave ask again.
     pub(super) fn begin(&mut self) {
         self.leaving.0.clear();
     }
 
-    /// Sees that a painting in these settings may be left; `hands` tells whether a take is played.
+    /// Checks that a painting in these settings may be left; `hands` tells whether a take is played.
     ///
-    /// # Errors
-    /// A [`UserError`] with advice where something would be lost.
+    /// # Errors A [`UserError`] with advice where something would be lost.
     pub(super) fn may_leave(
         &self,
         config: &RigConfig,
@@ -148,7 +147,7 @@ impl Orders {
         }
     }
 
-    /// The paint node is another one: what the one before said holds no more.
+    /// Forgets the status of the previous paint node.
     pub(super) fn forget_status(&mut self) {
         while self.statuses.try_recv().is_some() {}
         self.status = None;
@@ -172,7 +171,7 @@ pub(super) fn refusal(fault: UserError) -> Outcome {
 pub(super) fn starts_again() -> Outcome {
     Outcome::refused(
         "the paint node is being started just now",
-        "wait until the painting is there, and ask again",
+        "wait until the painting is open, then repeat the command",
     )
 }
 

@@ -1,4 +1,4 @@
-//! What is asked of the rig as a whole: another painting, another file, a device.
+//! Requests to the rig as a whole: another painting, another file, a device.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use super::orders::{refusal, starts_again};
 use crate::up::plan::{Hands, Role, device};
 
 impl Supervisor {
-    /// Answers what is asked of the rig.
+    /// Answers requests to the rig.
     pub(super) fn take_requests(&mut self, now: Instant) {
         if let Some(file) = self.orders.follow_paint() {
             self.follow_painting(file);
@@ -24,13 +24,13 @@ impl Supervisor {
         let bus = Arc::clone(&self.link.bus);
         while let Some((request, asked)) = self.orders.next(&*bus) {
             let is_held = self.switch.is_busy() || !self.orders.has_heard(&asked, bus.now_ns());
-            // It is asked again, and done when its turn comes.
+            // It is repeated, and done in its turn.
             let outcome = if is_held {
                 Outcome::Waiting
             } else {
                 self.orders.begin();
                 let outcome = self.order(&asked, now).unwrap_or_else(refusal);
-                // The rig itself says when a switch is done; a removal is looked at each time.
+                // The rig itself reports the end of a switch; a removal is checked each time.
                 if self.switch.is_busy() || outcome != Outcome::Waiting {
                     let asker = (asked.client, asked.number);
                     self.orders.commands.keep(asker, outcome.clone());
@@ -44,7 +44,7 @@ impl Supervisor {
         }
     }
 
-    /// A painting whose file was gone goes on in another one: there it is found again after a crash.
+    /// Stores the new file of a painting whose file was gone: there it is found after a crash.
     fn follow_painting(&mut self, file: PathBuf) {
         let document = &mut self.settings.config.paint.document;
         if self.switch.is_busy() || document.as_ref().is_none_or(|own| *own == file) {
@@ -55,11 +55,10 @@ impl Supervisor {
         self.settings.write_or_warn();
     }
 
-    /// Begins to do what is asked.
     fn order(&mut self, asked: &CommandRequest, now: Instant) -> Result<Outcome, UserError> {
         if asked.after.is_some() {
             return Err(UserError::usage("the rig has no journal in which to wait")
-                .help("ask without a place in it"));
+                .help("send the command without a position in the journal"));
         }
         let command = match &asked.command {
             Command::Rig(command) => command,
@@ -113,7 +112,7 @@ impl Supervisor {
         Ok(Outcome::Waiting)
     }
 
-    /// Starts a device with other settings, or one that was not there.
+    /// Starts a device with other settings, or a new one.
     fn put_device(&mut self, toml: &str, now: Instant) -> Result<Outcome, UserError> {
         self.has_devices()?;
         let section = DeviceSection::parse(toml)?;

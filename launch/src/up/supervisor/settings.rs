@@ -45,7 +45,7 @@ impl Settings {
         written
     }
 
-    /// The same for another painting; the file of the settings before is kept, for [`Self::put_back`].
+    /// Writes the settings of another painting, and keeps the old file for [`Self::put_back`].
     pub(super) fn set_painting(&mut self, config: RigConfig) -> Result<(), UserError> {
         let [path, former] = self.files();
         std::fs::remove_file(&former).ok();
@@ -55,10 +55,10 @@ impl Settings {
         self.set(config)
     }
 
-    /// Puts the settings of the painting before back. They hold for the launcher even if they cannot be written.
+    /// Restores the settings of the previous painting. They hold for the launcher even if they cannot be written.
     pub(super) fn put_back(&mut self, before: RigConfig) -> Result<(), UserError> {
         self.config = before;
-        // Renaming needs no room on the disk.
+        // Renaming needs no disk space.
         let [path, former] = self.files();
         std::fs::rename(&former, &path).or_else(|_| {
             let written = self.write();
@@ -66,7 +66,7 @@ impl Settings {
         })
     }
 
-    /// The same with a fault that is said, and otherwise does no harm.
+    /// Writes the settings; a fault is only reported.
     pub(super) fn write_or_warn(&self) -> bool {
         let written = self.write();
         let warn = |fault: &UserError| {
@@ -83,15 +83,15 @@ impl Settings {
         sketches.has(path).then_some(path)
     }
 
-    /// A painting was saved under a name, or is left: its sketch goes if nothing is lost with it.
+    /// Removes the sketch of a painting that was saved under a name, or left, if nothing is lost with it.
     pub(super) fn leave_sketch(&self, path: &Path, why: Leave) {
         if let Some(sketches) = self.sketches.as_ref().filter(|sketches| sketches.has(path)) {
             sketch::leave(sketches, path, why);
         }
     }
 
-    /// The painting is in the file `to` from now on. The sketch that it was goes once nodes that start again are told of
-    /// that, and only if it is another file.
+    /// Records the painting's new file. Its sketch is removed once restarting nodes know that, and only if it is
+    /// another file.
     pub(super) fn is_saved_as(&mut self, to: &Path) {
         let before = self.config.paint.document.replace(to.to_owned());
         let is_written = self.write_or_warn();
@@ -100,7 +100,7 @@ impl Settings {
         }
     }
 
-    /// At the end of the rig: says where the sketch is kept; one on which nothing was painted goes.
+    /// Reports at the end of the rig where the sketch is stored, and removes a blank one.
     pub(super) fn end_sketch(&self) {
         let Some(path) = self.sketch() else {
             return;

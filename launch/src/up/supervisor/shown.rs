@@ -1,4 +1,4 @@
-//! What a rig that has come up shows to who started it.
+//! Messages of a started rig to its user.
 
 use indicatif::ProgressBar;
 use maulstick_rig::log::say;
@@ -67,7 +67,7 @@ fn table(crew: &Crew, settings: &Settings) -> String {
     text
 }
 
-/// Where the painting and its recording are, and how to end the rig.
+/// Places of the painting and its recording, and the way to end the rig.
 fn places(settings: &Settings) -> String {
     let recorded = settings.config.record.as_ref();
     let recorded = recorded.map(|record| format!("recorded in {}\n", record.folder.display()));

@@ -1,4 +1,4 @@
-//! The sketch of a rig with a window: the file of a painting for which nobody gave one.
+//! The sketch of a rig with a window: the file of a painting without a name.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
@@ -22,7 +22,7 @@ fn fresh(sketches: &Sketches) -> Result<PathBuf, UserError> {
     sketches.fresh(&Zoned::now().strftime("%Y-%m-%d %H.%M.%S").to_string())
 }
 
-/// The sketches of this user, tidied up; none where the system has no room for them, which is said.
+/// The sketches of this user, tidied up; `None` where the system has no room for them, which is reported.
 pub(in crate::up) fn of_user() -> Option<Sketches> {
     let sketches = said(Sketches::of_user())?;
     tidy(&sketches);
@@ -42,11 +42,11 @@ fn said<T>(result: Result<T, UserError>) -> Option<T> {
     result.inspect_err(warn).ok()
 }
 
-/// Removes the sketches that leave and of which the painter was told, and those on which nothing was ever painted. One
-/// that is open in another rig stays.
+/// Removes the sketches whose removal was announced to the painter, and blank ones. One that is open in another rig
+/// stays.
 fn tidy(sketches: &Sketches) {
     for sketch in sketches.notified() {
-        // Who has it open has it locked.
+        // An open one is locked.
         if glance(&sketch.path).is_ok() {
             tracing::info!("{} goes: the newer sketches stay", sketch.path.display());
             remove(sketches, &sketch.path);
@@ -70,12 +70,12 @@ fn remove(sketches: &Sketches, path: &Path) {
     }
 }
 
-/// True if nobody has a painting open, and nothing was ever painted on it. A file beyond [`BLANK_BYTES`] is not read.
+/// True if a painting is not open, and blank. A file beyond [`BLANK_BYTES`] is not read.
 fn is_blank(path: &Path) -> bool {
     let bytes = |path: &Path| std::fs::metadata(path).map_or(0, |about| about.len());
     match (bytes(path), bytes(&companion(path, "-wal"))) {
         (0, 0) => return true,
-        // Its journal may have what it lacks.
+        // Its journal may contain the missing part.
         (0, _) => return false,
         (file, journal) if file + journal >= BLANK_BYTES => return false,
         _ => {}
@@ -89,17 +89,17 @@ fn is_blank(path: &Path) -> bool {
     document.close().is_ok() && is_blank
 }
 
-/// Removes a sketch that is painted on no more, if nothing is lost with it.
+/// Removes a sketch that is no longer painted on, if nothing is lost with it.
 pub(super) fn leave(sketches: &Sketches, path: &Path, why: Leave) {
     if why == Leave::Named || is_blank(path) {
         remove(sketches, path);
     }
 }
 
-/// Why a sketch is not painted on any more.
+/// Reasons to leave a sketch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Leave {
-    /// It has a name of its own now.
+    /// It was saved under a name.
     Named,
     /// Another painting is on the easel, or none.
     Left,
@@ -116,7 +116,7 @@ mod tests {
 
     use super::*;
 
-    /// A painting in a file, painted on or blank, that was left ten minutes ago; while the document lives it is open.
+    /// A painting in a file, painted on or blank, that was left ten minutes ago; it is open while the document lives.
     fn painting(path: &Path, is_painted: bool) -> Document {
         let settings = DocumentSettings::new(path, Access::Paint);
         let (document, _) = Document::open(&settings).expect("new");

@@ -1,6 +1,6 @@
-//! Another painting in a running rig, as a state machine: the request is checked, the paint node saves the painting and ends,
-//! and starts with the other one. If that does not come up, the one before is opened again. It takes events and returns
-//! what is to be done; it asks no process and writes no file itself.
+//! Another painting in a running rig, as a state machine: the request is checked, the paint node saves the painting and
+//! ends, and starts with the other one. If that fails, the previous one is opened again. It takes events and returns
+//! actions; it signals no process and writes no file itself.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -52,9 +52,9 @@ pub(super) enum SwitchEvent {
     PaintRuns,
     /// The paint node that was to leave does not run.
     PaintAway,
-    /// The paint node ended, as it was asked to, or while it opened the other painting.
+    /// The paint node ended, on request or while it opened the other painting.
     PaintLeft(Ended),
-    /// The paint node ended by itself, or will be another one.
+    /// The paint node ended unexpectedly, or is about to be replaced.
     PaintGone,
     /// The settings could not be written.
     NotWritten(UserError),
@@ -62,7 +62,7 @@ pub(super) enum SwitchEvent {
     Time(Duration),
 }
 
-/// What a switch asks for.
+/// Action of a switch.
 #[derive(Debug, PartialEq)]
 pub(super) enum SwitchAction {
     /// Ask the paint node to end, to be started afresh.
@@ -73,7 +73,7 @@ pub(super) enum SwitchAction {
     Use(Box<RigConfig>),
     /// Use those before again.
     PutBack(Box<RigConfig>),
-    /// Start the paint node; what was in memory alone is gone, and its brushes are loaded anew.
+    /// Start the paint node; a painting in memory is lost, and its brushes are loaded again.
     StartPaint,
     /// The painting of a file is left.
     Leave(PathBuf),
@@ -83,7 +83,6 @@ pub(super) enum SwitchAction {
     RenewDevices,
     /// The painting is in this file.
     SavedAs(PathBuf),
-    /// Answer who asked.
     Reply(Asker, Outcome),
 }
 
@@ -96,18 +95,17 @@ pub(super) struct Switch {
 
 #[derive(Debug, Default)]
 enum Stage {
-    /// Nothing is asked for.
     #[default]
     Idle,
-    /// It is checked that the painting can be opened or created. The flag: the painting in memory may be discarded.
+    /// The painting is checked. The flag allows the painting in memory to be discarded.
     Checking { forget: bool },
-    /// The paint node keeps what was painted, and ends.
+    /// The paint node saves the painting, and ends.
     Closing { plan: Box<Plan>, since: Instant },
     /// It starts with the other painting.
     Opening(Opening),
-    /// It starts with the painting that there was, for this reason.
+    /// It starts with the previous painting, for this reason.
     Returning(Outcome),
-    /// The paint node puts the painting there; who asks it gives up once it has ended.
+    /// The paint node saves the painting there; the request is given up once the node has ended.
     Saving { to: PathBuf, gone: Arc<AtomicBool> },
 }
 
@@ -115,7 +113,6 @@ enum Stage {
 #[derive(Debug)]
 struct Opening {
     plan: Box<Plan>,
-    /// The settings before.
     before: Box<RigConfig>,
     since: Instant,
 }
@@ -137,12 +134,12 @@ impl Switch {
         gone
     }
 
-    /// True while something is asked for.
+    /// True during a request.
     pub(super) fn is_busy(&self) -> bool {
         !matches!(self.stage, Stage::Idle)
     }
 
-    /// Who asked for it.
+    /// Client of the request.
     pub(super) fn asker(&self) -> Asker {
         self.asker
     }
@@ -165,7 +162,7 @@ impl Switch {
         matches!(self.stage, Stage::Saving { .. })
     }
 
-    /// Gives the paint node so much more time.
+    /// Extends the deadline of the paint node.
     pub(super) fn postpone(&mut self, by: Duration) {
         if let Stage::Closing { since, .. } | Stage::Opening(Opening { since, .. }) =
             &mut self.stage
@@ -174,7 +171,7 @@ impl Switch {
         }
     }
 
-    /// Takes in an event, in a rig with these settings; returned is what is to be done.
+    /// Handles an event, in a rig with these settings; returns actions.
     pub(super) fn on(
         &mut self,
         event: SwitchEvent,
@@ -285,7 +282,7 @@ fn saving(to: PathBuf, gone: Arc<AtomicBool>, event: SwitchEvent, asker: Asker) 
     }
 }
 
-/// The paint node has ended as it was asked to, or badly: the other painting is opened, or the one that there was.
+/// The paint node has ended, on request or badly: opens the other painting, or the previous one.
 fn close(plan: Box<Plan>, ended: Ended, config: &RigConfig, now: Instant) -> Step {
     if ended == Ended::Well {
         let actions = vec![SwitchAction::Use(Box::new(plan.config.clone()))];
@@ -359,7 +356,7 @@ fn ended_as_it_saved(to: &Path) -> Outcome {
             "the paint node ended before it said that the painting is in {}",
             to.display()
         ),
-        "look whether that file has it, and open it there; the messages of the rig say what was wrong",
+        "check whether that file has it, and open it there; the messages of the rig give the reason",
     )
 }
 

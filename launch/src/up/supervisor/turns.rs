@@ -1,5 +1,5 @@
-//! Turns of the launcher. While it stood still itself, with a machine that was suspended or with all that was stopped
-//! together, nobody could be heard: its clocks for others stand still too.
+//! Turns of the launcher. While it was stopped itself, by a suspended machine or together with all processes, it could
+//! receive nothing, so its deadlines for others are extended.
 
 use std::time::{Duration, Instant};
 

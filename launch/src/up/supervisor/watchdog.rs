@@ -1,6 +1,6 @@
-//! Detection of nodes that make no progress though their token stands and their process lives: no status comes from the
-//! loop that does their work, or it says that nothing is done of what waits. What the process does meanwhile tells how
-//! long it is believed: a stopped one and one in a deadlock do nothing, a vast canvas is filled by a step that takes long.
+//! Detection of nodes without progress whose token and process live: no status comes from their main loop, or the
+//! status shows no progress on waiting work. The activity of the process decides how long to wait: a stopped or
+//! deadlocked one does nothing, while a vast canvas is filled by a long step.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,21 +12,21 @@ use super::crew::Action;
 use super::node::{Node, State};
 use crate::up::plan::Role;
 
-/// Silence after which it is looked at what a process does.
+/// Silence after which the activity of a process is checked.
 const SUSPECT: Duration = Duration::from_secs(1);
 /// Time for which it is looked at.
 const LOOK: Duration = Duration::from_millis(3500);
 /// Time of the processor in that period that counts as work, on a machine that has many times more to do than it can.
 const WORK: Duration = Duration::from_millis(70);
-/// One that waits for a disk, or for its other threads, is believed for so long.
+/// Waiting time for a node that waits for a disk, or for its other threads.
 const WAITS: Duration = Duration::from_secs(20);
 
-/// How long a silent node is believed.
+/// Waiting times for a silent node.
 #[derive(Clone, Copy, Debug)]
 struct Patience {
-    /// While it does nothing.
+    /// While it is idle.
     idle: Duration,
-    /// While the thread that does its work has the processor, in time of the processor.
+    /// While its main thread is running, in processor time.
     working: Duration,
 }
 
@@ -39,7 +39,7 @@ impl Patience {
         match role {
             // A turn of a brush is bounded.
             Role::Brush => seconds(4.5, 8),
-            // Its longest step is as long as a start that has the same to do.
+            // Its longest step takes as long as a start with the same work.
             Role::Paint => seconds(4.5, 600),
             Role::Player => seconds(4.5, 20),
             // A vendor's library may search for its device, and a desktop may hold its windows up.
@@ -48,19 +48,19 @@ impl Patience {
     }
 }
 
-/// What a process has done so far.
+/// Activity of a process so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Activity {
-    /// Time of the processor of its first thread, which does the work of a node.
+    /// Processor time of its first thread, which does the work of a node.
     own: Duration,
-    /// Of the others.
+    /// Processor time of the others.
     others: Duration,
     /// True while a thread waits for a disk.
     on_disk: bool,
 }
 
 impl Activity {
-    /// Of a process; none where it is gone.
+    /// Activity of a process; `None` where it is gone.
     fn of(pid: u32) -> Self {
         let process = Path::new("/proc").join(pid.to_string());
         let threads = process.join("task");
@@ -78,7 +78,7 @@ impl Activity {
 /// State of a process or thread, and its time of the processor.
 fn stat(folder: &Path) -> (Option<char>, Duration) {
     let stat = std::fs::read_to_string(folder.join("stat")).unwrap_or_default();
-    // After the name, which may hold anything: state and ten numbers, then user and system ticks.
+    // After the name, which may contain anything: state and ten numbers, then user and system ticks.
     let rest = stat.rsplit_once(')').map_or("", |(_, rest)| rest);
     let mut words = rest.split_whitespace();
     let state = words.next().and_then(|word| word.chars().next());
@@ -95,7 +95,7 @@ struct Watched {
     /// Time of its last progress.
     since: Instant,
     work: Option<NodeWork>,
-    /// What its process had done when it became suspect, and at the newest look.
+    /// Activity of its process when it became suspect, and at the newest check.
     looks: Option<[(Instant, Activity); 2]>,
 }
 
@@ -109,12 +109,12 @@ impl Watched {
         }
     }
 
-    /// Time passed in which nobody looked.
+    /// Adds a time without checks.
     fn postpone(&mut self, by: Duration) {
         (self.since, self.looks) = (self.since + by, None);
     }
 
-    /// Takes in a status: progress, unless nothing was done of what waits.
+    /// Handles a status: progress, unless waiting work was left undone.
     fn hear(&mut self, now: Instant, work: &NodeWork) {
         let stands = self.work.as_ref().is_some_and(|before| {
             let done = |work: &NodeWork| (work.consumed, work.produced);
@@ -166,14 +166,14 @@ pub(super) struct Watchdog {
 }
 
 impl Watchdog {
-    /// Gives all nodes so much more time.
+    /// Extends the deadlines of all nodes.
     pub(super) fn postpone(&mut self, by: Duration) {
         for node in self.nodes.values_mut() {
             node.postpone(by);
         }
     }
 
-    /// Takes in the status of a node.
+    /// Handles the status of a node.
     pub(super) fn hear(&mut self, name: &str, status: &NodeStatus, now: Instant) {
         let watched = self.nodes.get_mut(name);
         if let Some(watched) = watched.filter(|own| own.process == status.process) {
@@ -228,7 +228,7 @@ mod tests {
         }
     }
 
-    /// After how long a silent node of a role is ended whose process does this as time passes.
+    /// Time after which a silent node of a role is ended, given the activity of its process over time.
     fn ended_after(role: Role, activity: impl Fn(Duration) -> Activity) -> Option<Duration> {
         let start = Instant::now();
         let mut watched = Watched::new(1, start);

@@ -127,13 +127,13 @@ impl FrameInbox {
 /// Source of frames.
 #[derive(Clone)]
 pub struct FrameSource {
-    /// The bus.
+    /// Bus on which frames are requested.
     pub bus: Arc<dyn Bus>,
-    /// The query.
+    /// Topic of the query.
     pub topic: String,
     /// Origin of the queries.
     pub me: Origin,
-    /// The surface.
+    /// Number of the surface.
     pub surface: u32,
 }
 

@@ -49,7 +49,7 @@ impl Pulled {
         }
     }
 
-    /// The next question, as time goes on.
+    /// The next request, after some time.
     fn asked(&self) -> (Request, FrameRequest) {
         let give_up = Instant::now() + Duration::from_secs(60);
         loop {

@@ -7,7 +7,8 @@ use maulstick_types::FrameView;
 
 use super::tiles::{TileRect, Wanted};
 
-/// While the detail covers the view, the base follows after so many replies, or when the paint rests.
+/// Number of replies after which the base is updated while the detail covers the view; it is also updated when the
+/// paint rests.
 const BASE_EACH: u32 = 16;
 
 /// One of the two sheets.
@@ -25,7 +26,7 @@ pub enum Part {
 pub struct AtlasState {
     /// Its number: another one is another picture.
     pub number: u64,
-    /// Its level.
+    /// Level of the pyramid, 0 the finest.
     pub level: u32,
     /// Tiles that it has room for, across and up.
     pub room: [u32; 2],
@@ -40,7 +41,7 @@ pub struct AtlasState {
 pub struct Asked {
     /// The atlas it is for.
     pub part: Part,
-    /// Its level.
+    /// Level of the pyramid, 0 the finest.
     pub level: u32,
     /// Tiles.
     pub tiles: TileRect,
@@ -57,14 +58,14 @@ struct TileAtlas {
     since: u64,
     /// The tiles in flight, and up to which version they have arrived.
     coming: Option<(TileRect, u64)>,
-    /// How many of them have arrived.
+    /// Number of tiles that have arrived.
     arrived: u32,
     /// True if more changes of the tiles in the atlas are pending.
     more: bool,
 }
 
 impl TileAtlas {
-    /// True if it has this level, room for so many tiles, and the wanted tint of wet paint.
+    /// True if it has this level, room for `size` tiles, and the wanted tint of wet paint.
     fn takes(&self, level: u32, size: [u32; 2], wet: bool) -> bool {
         let AtlasState { room, .. } = self.state;
         let fits = (0..2).all(|i| size[i] <= room[i]);
@@ -224,7 +225,7 @@ impl TilePlanner {
         asked.waits && !(same && base)
     }
 
-    /// Takes in a reply; false if it is of no use and everything is requested anew.
+    /// Reads a reply; false if it is of no use and everything is requested again.
     pub fn take(&mut self, asked: &Asked, reply: &FrameView<'_>) -> bool {
         if reply.cells.contains(&0) {
             (self.epoch, self.look) = (reply.epoch, reply.look);
@@ -246,7 +247,7 @@ impl TilePlanner {
             }
             self.atlases[asked.part as usize].coming = Some((asked.tiles, 0));
         } else if reply.look != self.look {
-            // All come anew, into the same pictures.
+            // All are sent again, into the same pictures.
             for atlas in &mut self.atlases {
                 atlas.since = 0;
                 atlas.more = true;

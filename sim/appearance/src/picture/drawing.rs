@@ -22,7 +22,7 @@ pub struct Drawing<'a> {
     export: &'a Export,
 }
 
-/// A point as if the surface were flat there, under a lamp of strength 1 and of this colour.
+/// A point on a flat surface, under a lamp of strength 1 and of this colour.
 pub(super) fn flat(spot: &Spot, lamp: [f32; 3]) -> [f32; 3] {
     [0, 1, 2].map(|i| spot.unlit[i] + lamp[i] * SURFACE)
 }
@@ -36,7 +36,7 @@ impl<'a> Drawing<'a> {
         Self::new(banded, light, Some(surroundings), export)
     }
 
-    /// A surface as if it were flat: its colours alone, under a lamp of strength 1 and of this colour.
+    /// A surface without relief: its colours alone, under a lamp of strength 1 and of this colour.
     #[must_use]
     pub fn flat(banded: Banded<'a>, lamp: [f32; 3], export: &'a Export) -> Self {
         let light: Light = Box::new(move |spot| flat(spot, lamp));
@@ -64,7 +64,7 @@ impl<'a> Drawing<'a> {
         &self.banded
     }
 
-    /// The bytes of the profile that says what its pixels mean.
+    /// The bytes of the pixels' ICC profile.
     #[must_use]
     pub fn icc(&self) -> &'a [u8] {
         self.export.profile.icc()
@@ -82,7 +82,7 @@ impl<'a> Drawing<'a> {
         pixels
     }
 
-    /// The pixels of a tile as if the surface were level, as far as it is on the surface, from its top row.
+    /// The pixels of a tile without relief, within the surface, from its top row.
     #[must_use]
     pub fn tile(&self, (id, shown): (TileId, &DisplayTile), depth: Depth) -> Vec<u8> {
         let [across, rows] = self.banded.within(id);
@@ -104,15 +104,15 @@ impl<'a> Drawing<'a> {
         pixels
     }
 
-    /// As many zeros as a band has bytes.
+    /// Zeros for the bytes of a band.
     #[must_use]
     pub fn blank(&self, band: usize, depth: Depth) -> Vec<u8> {
         let width = self.banded.cells()[0];
         vec![0; self.banded.rows(band).len() * width * depth.pixel_bytes()]
     }
 
-    /// Draws a tile into the pixels of its band; `heights` are those around the band, without which
-    /// the surface is level.
+    /// Draws a tile into the pixels of its band; `heights` are those around the band, without which the surface is
+    /// flat.
     pub fn lay(
         &self,
         (id, shown): (TileId, &DisplayTile),

@@ -4,12 +4,12 @@ use std::io::{Error, Write};
 
 use super::Depth;
 
-/// Level of deflate: a picture of strokes takes a twelfth of the time of the default and a sixth more room.
+/// Level of deflate: a picture of strokes takes a twelfth of the default's time and is a sixth larger.
 const LEVEL: png::DeflateCompression = png::DeflateCompression::Level(1);
-/// Bytes of image data in one chunk of a file.
+/// Size of a chunk of image data in a file, bytes.
 const CHUNK: usize = 1 << 18;
 
-/// Cells of side `cell_m` that a metre holds, to the nearest.
+/// Cells of side `cell_m` per metre, rounded.
 #[must_use]
 pub fn density(cell_m: f64) -> u32 {
     (1.0 / cell_m).round().clamp(0.0, f64::from(u32::MAX)) as u32
@@ -18,20 +18,20 @@ pub fn density(cell_m: f64) -> u32 {
 /// Layout of the pixels of a file.
 #[derive(Clone, Copy, Debug)]
 pub struct Pixels<'a> {
-    /// Across and down.
+    /// Columns and rows.
     pub size: [usize; 2],
     /// Their channels.
     pub colour: png::ColorType,
     /// Bits of a channel.
     pub depth: Depth,
-    /// The ICC profile that says what they mean.
+    /// ICC profile of the pixels.
     pub icc: Option<&'a [u8]>,
     /// Pixels per metre.
     pub pixels_per_m: Option<u32>,
 }
 
 impl<'a> Pixels<'a> {
-    /// As a file's header says it.
+    /// Header of the file.
     #[must_use]
     pub fn info(&self) -> png::Info<'a> {
         let [width, height] = self.size.map(|pixels| pixels as u32);
@@ -51,10 +51,9 @@ impl<'a> Pixels<'a> {
     }
 }
 
-/// Writes a PNG: `fill` writes all its pixels, from the top row. The size of its writes changes no byte.
+/// Writes a PNG: `fill` writes all its pixels, from the top row. The bytes are independent of the size of its writes.
 ///
-/// # Errors
-/// The error of `to` or `fill`.
+/// # Errors The error of `to` or `fill`.
 pub fn write_png<E: From<Error>>(
     to: impl Write,
     info: png::Info<'_>,

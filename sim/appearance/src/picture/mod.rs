@@ -37,10 +37,10 @@ impl Default for Export {
 /// Bits of a channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depth {
-    /// 8.
+    /// 8 bits a channel.
     #[default]
     Eight,
-    /// 16, as two bytes, the higher one first.
+    /// 16 bits, as two bytes, the higher one first.
     Sixteen,
 }
 
@@ -62,11 +62,11 @@ pub struct Picture {
     pub width: usize,
     /// Pixels down.
     pub height: usize,
-    /// Red, green, blue.
+    /// Red, green and blue of each pixel.
     pub rgb: Vec<u8>,
-    /// The ICC profile that says what they mean.
+    /// ICC profile of the pixels.
     pub icc: Vec<u8>,
-    /// Pixels of a metre of what it shows, where that is known.
+    /// Pixels per metre of the subject, where known.
     pub pixels_per_m: Option<u32>,
 }
 

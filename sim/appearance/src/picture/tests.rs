@@ -19,7 +19,7 @@ use crate::show_paint::Counted;
 const CELLS: [u32; 2] = [150, 70];
 const CELL_M: f64 = 2.5e-4;
 
-/// Film whose thickness in quanta is a function of the place.
+/// A film whose thickness in quanta is a function of the place.
 fn store(quanta: impl Fn(usize, usize) -> f32) -> TileStore {
     let mut store = TileStore::new(CELLS);
     let ids: Vec<_> = store.iter().map(|(id, _)| id).collect();
@@ -101,7 +101,7 @@ fn around(lamp: &Lamp) -> Surroundings {
 fn slopes_go_on_over_the_borders_of_tiles() {
     const BEND: f32 = 40.0;
     let bowl = store(|x, y| BEND * (x * x + y * y) as f32);
-    // Slope as a colour: in a paraboloid it grows by the same amount with every cell.
+    // Slope as a colour: in a paraboloid it increases equally with every cell.
     let scale = (CELL_M / QUANTUM_M) as f32 / (2.0 * BEND * 150.0);
     let light = move |spot: &Spot| {
         let [x, y] = spot.facet.slope.map(|slope| slope * scale);

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-/// The bond of a segment: to where the head as a whole would carry it.
+/// Bond of a segment: it is bound to where the head as a whole would carry it.
 ///
-/// Wet hair sticks together in bundles that bend as one (Bico and others 2004, "Elastocapillary
-/// coalescence in wet hair").
+/// Wet hair sticks together in bundles that bend as one (Bico and others 2004, "Elastocapillary coalescence in wet
+/// hair").
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bond {
     /// Unit direction that the segment would have if its spine bent as the core of the head does.
@@ -18,7 +18,7 @@ impl Bond {
     /// E = k·(1 − d·g), d the segment's direction and g the one that it is bound to, J.
     #[must_use]
     pub fn value(&self, direction: DVec3) -> f64 {
-        // 1 − d·g loses its digits where the two are near each other.
+        // 1 − d·g loses its digits where d and g nearly coincide.
         0.5 * self.stiffness * (direction - self.toward).length_squared()
     }
 

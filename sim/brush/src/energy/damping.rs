@@ -12,9 +12,9 @@ pub struct Damping {
     pub value: f64,
     /// dE/dv, never longer than D, N·m.
     pub torque: DVec3,
-    /// d²E/dv² is `across`·I − `along`·vvᵀ, N·m.
+    /// Coefficients of the Hessian: d²E/dv² is `across`·I − `along`·vvᵀ, N·m.
     pub across: f64,
-    /// See `across`.
+    /// Coefficient of vvᵀ, N·m; see `across`.
     pub along: f64,
 }
 

@@ -4,9 +4,9 @@ use glam::{DMat3, DVec3};
 
 use super::outer;
 
-/// The energy by which a joint is pushed away from a neighbour's that comes nearer than it stands at
-/// rest: E = k/(8D²)·max(0, D² − r²)², r the distance, D the one at rest. Its force at r → D is
-/// k·(D − r); it has no pole and pulls nothing together, so a head may splay but not collapse.
+/// Energy by which a joint repels a neighbouring spine's joint that comes nearer than at rest: E = k/(8D²)·max(0, D²
+/// − r²)², with r the distance and D the distance at rest. Its force at r → D is k·(D − r). It has no pole and never
+/// attracts, so a head may splay but not collapse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Repulsion {
     /// E, J.
@@ -17,8 +17,8 @@ pub struct Repulsion {
     pub hessian: DMat3,
 }
 
-/// Evaluates [`Repulsion`] for stiffness `k` (N/m), the vector `x` from the neighbour to the joint (m) and the distance
-/// at rest (m); `None` if they are far enough apart.
+/// Evaluates [`Repulsion`] for stiffness `k` (N/m), the vector `x` from the neighbour to the joint (m) and the
+/// distance at rest (m); `None` beyond that distance.
 #[must_use]
 pub fn neighbour_repulsion(k: f64, x: DVec3, at_rest: f64) -> Option<Repulsion> {
     let square = at_rest * at_rest;

@@ -86,7 +86,8 @@ pub fn rest_after(b: DVec3, r: DVec3, d: DVec3) -> DVec3 {
     r - s * (s.dot(r) / least(1.0 + b.dot(d))) + d * (2.0 * b.dot(r))
 }
 
-/// A segment that points back along the base has no shortest turn: its neighbourhood is left out.
+/// Smallest allowed |q|: a segment that points back along the base has no shortest turn, so its neighbourhood is left
+/// out.
 fn least(q: f64) -> f64 {
     q.max(1e-3)
 }

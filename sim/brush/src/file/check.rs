@@ -10,7 +10,7 @@ use super::{BrushError, BrushFile};
 
 /// Joints of a spine at most.
 pub const MOST_JOINTS: usize = 64;
-/// Joints of all spines at most: a state of one solve fits a message many times over.
+/// Greatest number of joints of all spines: a state of one solve fits a message many times over.
 pub const MOST_IN_ALL: usize = 512;
 
 /// Strips of a head at most.

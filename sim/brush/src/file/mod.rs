@@ -44,15 +44,15 @@ use self::check::within;
 use self::sections::{Contact, Force, Head, Load, Spines, Strips, Surface};
 
 /// Thickness of a ferrule, in widths of a strip, below which it is a line.
-const THIN: f64 = 1.5;
+const LINE_THICKNESS_STRIPS: f64 = 1.5;
 /// Width of a strip, cells, below which strips merge on the canvas.
 const MOST_CELLS_WIDE: f64 = 2.0;
 /// The fewest strips of a thinned head.
 const FEWEST_STRIPS: usize = 24;
-/// A width beyond by less than this share is not beyond.
+/// Relative tolerance of a width's upper bound.
 const ROUNDING: f64 = 1e-6;
 
-/// The reason why a brush cannot be loaded.
+/// Errors of reading, checking and scaling a brush file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BrushError {
     /// No such brush; the nearest name is proposed.
@@ -63,10 +63,10 @@ pub enum BrushError {
         /// The nearest name, if one is near.
         nearest: Option<String>,
     },
-    /// The file is no brush file.
+    /// The text is not a brush file.
     #[error("{0}")]
     File(String),
-    /// More bytes than a brush file may have.
+    /// The file exceeds the size limit of a brush file.
     #[error(
         "written out it has {bytes} bytes, and may have {BRUSH_FILE_MAX}: make its skin of fewer faces and weights"
     )]
@@ -111,7 +111,7 @@ pub struct BrushFile {
     /// The skin around them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surface: Option<Surface>,
-    /// Contact with the surface painted on.
+    /// Friction with the canvas or palette.
     pub contact: Contact,
     /// Load of the head.
     pub load: Load,
@@ -132,11 +132,10 @@ impl BrushFile {
         Ok(file)
     }
 
-    /// Checks all numbers, and that it can be announced and kept: written again, numbers may take more room than in the
-    /// file that was read.
+    /// Checks all numbers and the length of the file as written anew, in which numbers may take more room than in the
+    /// text that was read.
     ///
-    /// # Errors
-    /// [`BrushError::Range`], [`BrushError::TooLong`].
+    /// # Errors [`BrushError::Range`], [`BrushError::TooLong`].
     pub fn check(&self) -> Result<(), BrushError> {
         check::check(self)?;
         match self.to_toml()?.len() {
@@ -145,10 +144,9 @@ impl BrushFile {
         }
     }
 
-    /// As a file, which [`parse`](Self::parse) reads back to the same brush.
+    /// The brush file as TOML; [`parse`](Self::parse) reads it back to the same brush.
     ///
-    /// # Errors
-    /// [`BrushError::File`] where a value cannot be written as TOML.
+    /// # Errors [`BrushError::File`] where a value cannot be written as TOML.
     pub fn to_toml(&self) -> Result<String, BrushError> {
         toml::to_string(self).map_err(|error| BrushError::File(error.to_string()))
     }
@@ -170,14 +168,14 @@ impl BrushFile {
         for chain in &mut brush.spines.chains {
             let places = std::iter::once(&mut chain.root_mm).chain(&mut chain.segments_mm);
             places.flatten().for_each(|mm| *mm *= scale);
-            // K = EI/l: the square of the size by the size.
+            // K = EI/l scales as the square of the size divided by the size.
             let torques = chain
                 .stiffness_n_mm
                 .iter_mut()
                 .chain(&mut chain.damping_n_mm);
             torques.for_each(|torque| *torque *= scale);
         }
-        // Finer strips have fewer bristles each: a head has as many strips at any size.
+        // A head has the same number of strips at any size, so finer strips have fewer bristles each.
         let strips = &mut brush.strips;
         let lengths = [
             &mut strips.width_mm,
@@ -195,14 +193,14 @@ impl BrushFile {
         Ok(brush)
     }
 
-    /// True if its strips stand in a line: its ferrule is hardly thicker than a strip is wide.
+    /// True if the strips stand in a line: the ferrule is hardly thicker than a strip is wide.
     #[must_use]
     pub fn is_line(&self) -> bool {
-        2e3 * self.half_thickness_m(0.0) < THIN * self.strips.width_mm
+        2e3 * self.half_thickness_m(0.0) < LINE_THICKNESS_STRIPS * self.strips.width_mm
     }
 
-    /// The brush with half as many strips, each twice as wide: the first of them, which stand as evenly as all.
-    /// None of one whose strips stand in a line, or are few.
+    /// The brush with half its strips, each twice as wide: the first half, which are spread as evenly as all. `None`
+    /// where the strips stand in a line or are already few.
     fn halved(&self) -> Option<Self> {
         let mut brush = self.clone();
         let strips = &mut brush.strips;
@@ -213,15 +211,15 @@ impl BrushFile {
         (strips.count >= FEWEST_STRIPS && !brush.is_line()).then_some(brush)
     }
 
-    /// The brush with as many strips as cells of `cell_m` can tell apart: halved as long as they are narrower than
-    /// `MOST_CELLS_WIDE` cells even so.
+    /// The brush with only the strips that cells of `cell_m` can resolve: halved while they stay narrower than
+    /// `MOST_CELLS_WIDE` cells.
     #[must_use]
     pub fn thinned(&self, cell_m: f64) -> Self {
         let most = MOST_CELLS_WIDE * cell_m * (1.0 + ROUNDING);
         self.halved_while(|brush| brush.strips.width_mm * 1e-3 <= most)
     }
 
-    /// The brush with its strips halved as often as `strips` of them are left.
+    /// The brush with its strips halved until `strips` of them are left.
     #[must_use]
     pub fn thinned_to(&self, strips: usize) -> Self {
         self.halved_while(|brush| brush.strips.count >= strips)
@@ -235,7 +233,7 @@ impl BrushFile {
         brush
     }
 
-    /// The brush wiped on a rag: it carries this share of its load.
+    /// The brush wiped on a rag: it keeps this share of its load.
     #[must_use]
     pub fn wiped(mut self, share: f64) -> Self {
         self.load.film_um *= share;
@@ -267,7 +265,7 @@ impl BrushFile {
         0.5e-3 * head.thickness_mm.unwrap_or(head.width_mm) * share_at(profile, s)
     }
 
-    /// Length of a bristle by the longest, at a place of the ferrule in shares of half its width and
+    /// Length of a bristle as a share of the longest, at a place of the ferrule in shares of half its width and
     /// thickness.
     #[must_use]
     pub fn length_share(&self, place: [f64; 2]) -> f64 {
@@ -282,7 +280,7 @@ impl BrushFile {
         }
     }
 
-    /// Stiffness at a place along the head, by that at the ferrule.
+    /// Stiffness at a place along the head as a share of that at the ferrule.
     #[must_use]
     pub fn stiffness_share(&self, s: f64) -> f64 {
         if self.spines.stiffness_profile.is_empty() {
@@ -293,7 +291,7 @@ impl BrushFile {
     }
 }
 
-/// The share at a place of a curve, which continues level beyond its ends.
+/// Value of a curve at a place; the curve continues level beyond its ends.
 fn share_at(curve: &[[f64; 2]], place: f64) -> f64 {
     let after = curve
         .iter()

@@ -13,16 +13,16 @@ pub enum Outline {
     Flat,
 }
 
-/// Material of the bristles: their appearance, and the transfer of paint from them.
+/// Material of the bristles, for their appearance and the transfer of paint.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Hair {
     /// Hog bristle: straw.
     #[default]
     Hog,
-    /// Sable and its like: red brown.
+    /// Sable and similar hair: red brown.
     Sable,
-    /// Badger: grey with light points; it blends what it goes through.
+    /// Badger: grey with light points; blends the paint that it moves through.
     Badger,
     /// The steel of a palette knife, which scrapes.
     Steel,
@@ -51,16 +51,16 @@ pub struct Head {
     /// Appearance of its bristles.
     #[serde(default)]
     pub hair: Hair,
-    /// Widest, mm.
+    /// Greatest width, mm.
     pub width_mm: f64,
-    /// Thickest, mm; as wide if absent.
+    /// Greatest thickness, mm; as the width if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thickness_mm: Option<f64>,
-    /// Length out of the ferrule, mm.
+    /// Length from the ferrule to the point, mm.
     pub length_mm: f64,
     /// Place along the head from 0 to 1, and half the width there as a share of half the widest.
     pub profile: Vec<[f64; 2]>,
-    /// The same for the thickness; as `profile` if empty.
+    /// The same for the thickness; equal to `profile` if empty.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub thickness_profile: Vec<[f64; 2]>,
     /// Place across the head (flat: −1 to 1 along the width; round: 0 to 1 from the middle), and the
@@ -78,7 +78,7 @@ pub enum Layout {
     Ring,
     /// A row along the width.
     Row,
-    /// Each where its own chain says.
+    /// Each spine where its own chain puts it.
     Chains,
 }
 
@@ -88,7 +88,7 @@ pub enum Layout {
 pub struct Chain {
     /// Root in the brush frame, mm.
     pub root_mm: [f64; 3],
-    /// Its segments at rest, from the ferrule to the point: each continues by this much, mm.
+    /// Segments at rest, from the ferrule to the point: the vector along each, mm.
     pub segments_mm: Vec<[f64; 3]>,
     /// Stiffness of the joint at the beginning of each segment, N·mm/rad.
     pub stiffness_n_mm: Vec<f64>,
@@ -100,7 +100,7 @@ pub struct Chain {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Spines {
-    /// Arrangement.
+    /// Arrangement of the spines in the ferrule.
     #[serde(default)]
     pub layout: Layout,
     /// Number of spines in the ring (beside the middle one) or the row.
@@ -118,18 +118,19 @@ pub struct Spines {
     /// Place along the head, and the stiffness there as a share of that at the ferrule.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stiffness_profile: Vec<[f64; 2]>,
-    /// Torque of a joint's inner friction by its spring's torque at 1 rad.
+    /// Torque of a joint's inner friction as a share of its spring's torque at 1 rad.
     #[serde(default)]
     pub damping: f64,
-    /// By how much the outer bristles curve toward the middle (outward if negative) at rest, from
-    /// the ferrule to the point, degrees.
+    /// Curl of the outer bristles toward the middle (outward if negative) at rest, from the ferrule to the point,
+    /// degrees.
     #[serde(default)]
     pub curl_deg: f64,
-    /// Stiffness with which spines keep the room that they have at rest, by that of a spine's point
+    /// Stiffness with which spines keep their spacing at rest, as a multiple of the stiffness of a spine's point
     /// against a force across it.
     #[serde(default)]
     pub volume: f64,
-    /// Stiffness of the bond between spines and the bend of the whole head, by that of their joints: dry, and soaked.
+    /// Stiffness of the bond between spines and the bend of the whole head, as a multiple of that of their joints:
+    /// dry, and soaked.
     #[serde(default = "bond")]
     pub bond: [f64; 2],
     /// The spines of the layout `chains`.
@@ -181,22 +182,22 @@ pub struct Strips {
     /// Share of the width that is lost up to the point.
     #[serde(default)]
     pub taper: f64,
-    /// Height of the most unruly one over the surface while the head is hardly pressed, mm.
+    /// Height of the most unruly strip over the surface while the head is hardly pressed, mm.
     pub lift_mm: f64,
     /// Additional depth of the fully pressed head in the tooth, mm.
     pub sink_mm: f64,
     /// Width of the fully pressed point by that of the head.
     pub open: f64,
-    /// By which share of the mean the strips differ in how much they carry.
+    /// Relative spread of the strips' paint capacity about the mean.
     pub unevenness: f64,
-    /// Number of clumps in which they stick together; 0 for no clumps.
+    /// Number of clumps in which the strips stick together; 0 for none.
     #[serde(default)]
     pub clumps: usize,
     /// Convergence of the points of a clump on a clean brush and on a full one, 0 to 1.
     #[serde(default)]
     pub clumping: [f64; 2],
-    /// Strips of the file that each stands for, where the head is [thinned](super::BrushFile::thinned): no part
-    /// of the file.
+    /// Number of the file's strips that one strip of a [thinned](super::BrushFile::thinned) head stands for; not in
+    /// the file.
     #[serde(skip, default = "itself")]
     pub stands_for: f64,
 }
@@ -209,14 +210,14 @@ const fn itself() -> f64 {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Surface {
-    /// Times that its control mesh is subdivided (Catmull and Clark 1978).
+    /// Number of subdivisions of its control mesh (Catmull and Clark 1978).
     pub levels: usize,
-    /// Distance by which the skin draws back within the strips as the head is pressed open, mm.
+    /// Distance by which the skin recedes within the strips as the head is pressed open, mm.
     pub recede_mm: f64,
     /// The control mesh; the head's own shape if empty.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub vertices_mm: Vec<[f64; 3]>,
-    /// Its faces: three or more vertices each, counterclockwise from outside.
+    /// Faces of the control mesh: three or more vertices each, counterclockwise from outside.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faces: Vec<Vec<usize>>,
     /// Joints that move each vertex, counted through all spines from the first, with their weights.
@@ -224,7 +225,7 @@ pub struct Surface {
     pub weights: Vec<Vec<(usize, f64)>>,
 }
 
-/// Contact with the surface.
+/// Friction of the bristles with the surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
@@ -236,7 +237,7 @@ pub struct Contact {
     /// C_η: the share of friction that a pulled bristle lacks.
     #[serde(default)]
     pub anisotropy: f64,
-    /// k > 1: how sharply that is focused on the way the bristle is pulled.
+    /// k > 1: how sharply the missing friction is focused on the direction in which the bristle is pulled.
     #[serde(default = "two")]
     pub focus: f64,
 }
@@ -251,7 +252,7 @@ fn two() -> f64 {
 pub struct Load {
     /// Film on the strips of a freshly loaded head, µm.
     pub film_um: f64,
-    /// Paint inside them, as thick as if it were spread over them, µm.
+    /// Paint inside the strips, as the thickness of a film spread over them, µm.
     pub inside_um: f64,
 }
 

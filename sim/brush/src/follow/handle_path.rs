@@ -1,20 +1,19 @@
-//! Path of the handle from one sample to the next: the parabola through both and the one before,
-//! walked cell by cell.
+//! Path of the handle from one sample to the next: the parabola through both and the one before, walked cell by cell.
 //!
-//! A hand moves smoothly; straight chords between samples would depend on how often it is sampled,
-//! the parabola does so only in third order.
+//! Straight chords between samples would depend on the sample rate in second order; the parabola does so only in
+//! third order.
 
 use glam::{DQuat, DVec3, DVec4};
 use maulstick_num::geometry::{Rigid, canonical};
 
-/// Chords by which the length of the path is measured.
+/// Number of chords by which the length of the path is measured.
 const CHORDS: usize = 8;
-/// Ratio of an interval to the one before it from which it counts as a pause: the speed before it is no measure of the
-/// whole path then.
+/// Ratio of an interval to the one before it from which it counts as a pause; the speed before a pause says little
+/// about the path across it.
 const PAUSE: f64 = 4.0;
 
-/// Bend of a path that any hand may have, m: it turns round at 1.5 m/s between two frames of a window. More is that of a
-/// pointer that leapt before, and would swing far out.
+/// Bend of a path that is always allowed, m: that of a hand which turns round at 1.5 m/s between two frames of a
+/// window. More comes from a pointer that leapt before, and would swing far out.
 const FREE_BEND_M: f64 = 0.03;
 
 /// A sampled pose and its time.
@@ -38,9 +37,10 @@ pub struct HandlePath {
 }
 
 impl HandlePath {
-    /// The path from `from` to `to` of a hand that came from `before`; straight without it. Across a pause its bend is
-    /// limited so that it goes nowhere backward: a hand that was fast before may have stopped in it; after a leap, so that it
-    /// does not swing out. Its length is that of the farther of the ferrule and the point of a head of `head_m`.
+    /// The path from `from` to `to` of a hand that came from `before`; straight without it. The bend is limited
+    /// across a pause, so that the path never runs backward (a fast hand may have stopped meanwhile), and after a
+    /// leap, so that it does not swing out. Its length is that of the farther of the ferrule and the point of a head
+    /// of `head_m`.
     #[must_use]
     pub fn new(before: Option<&Sampled>, from: &Sampled, to: &Sampled, head_m: f64) -> Self {
         let near = |of: DQuat, q: DQuat| if of.dot(q) < 0.0 { -q } else { q };
@@ -55,7 +55,7 @@ impl HandlePath {
                     from.event_ns.saturating_sub(before.event_ns).max(1) as f64,
                     to.event_ns.saturating_sub(from.event_ns).max(1) as f64,
                 );
-                // The second divided difference of three samples, in the parameter of this way.
+                // The second divided difference of three samples, in the parameter of this path.
                 let (first, second) = (h2 * h2 / (h1 * (h1 + h2)), h2 / (h1 + h2));
                 let start = near(from.pose.rotation, before.pose.rotation);
                 let place = (end.translation - from.pose.translation) * second
@@ -90,7 +90,7 @@ impl HandlePath {
         path
     }
 
-    /// Its length, m.
+    /// Length of the path, m.
     #[must_use]
     pub fn length_m(&self) -> f64 {
         self.lengths[CHORDS]
@@ -124,19 +124,19 @@ impl HandlePath {
     }
 }
 
-/// The bend of a path with which neither its part along the surface nor its height turns back.
+/// The bend limited so that neither the path along the surface nor its height turns back.
 fn limited(bend: DVec3, path: DVec3) -> DVec3 {
     let along = bend.truncate().clamp_length_max(path.truncate().length());
     along.extend(bend.z.clamp(-path.z.abs(), path.z.abs()))
 }
 
-/// The bend along the surface of a path after which a pointer may have leapt.
+/// The bend along the surface, limited for a path that may follow a leap of the pointer.
 fn without_a_leap(bend: DVec3, path: DVec3) -> DVec3 {
     let most = path.truncate().length().max(FREE_BEND_M);
     bend.truncate().clamp_length_max(most).extend(bend.z)
 }
 
-/// As [`limited`], of a turn.
+/// [`limited`] for a rotation.
 fn limited_turn(bend: DQuat, turn: DQuat) -> DQuat {
     let [bend, turn] = [bend, turn].map(DVec4::from);
     DQuat::from_vec4(bend.clamp_length_max(turn.length()))
@@ -145,22 +145,23 @@ fn limited_turn(bend: DQuat, turn: DQuat) -> DQuat {
 /// A segment of the path between two samples.
 #[derive(Clone, Copy, Debug)]
 pub struct PathSegment<'a> {
-    /// The path.
+    /// The whole path between the samples.
     pub path: &'a HandlePath,
     /// Its parameter where the piece begins.
     pub from: f64,
-    /// And where it ends.
+    /// Parameter where the piece ends.
     pub to: f64,
     /// Start of the path, rig clock, ns.
     pub start_ns: u64,
-    /// And when it ends.
+    /// End of the path, rig clock, ns.
     pub end_ns: u64,
-    /// Path length from the previous solve to its end, m: the length of the piece unless a sample was in between.
+    /// Path length from the previous solve to the end of this piece, m: the piece's own length unless a sample was in
+    /// between.
     pub length_m: f64,
 }
 
 impl PathSegment<'_> {
-    /// Its end.
+    /// The pose and time at the end.
     #[must_use]
     pub fn end(&self) -> Sampled {
         let whole = (self.end_ns - self.start_ns) as f64;
@@ -170,7 +171,7 @@ impl PathSegment<'_> {
         }
     }
 
-    /// Its two halves.
+    /// The two halves of this piece.
     #[must_use]
     pub fn halves(&self) -> [Self; 2] {
         let middle = 0.5 * (self.from + self.to);
@@ -207,7 +208,7 @@ mod tests {
         }
     }
 
-    /// Farthest of the way from the circle that its samples lie on.
+    /// Greatest distance of the path from the circle that its samples lie on.
     fn error(h: f64, before: Option<f64>) -> f64 {
         let before = before.map(sampled);
         let path = HandlePath::new(before.as_ref(), &sampled(1.0), &sampled(1.0 + h), 0.1);

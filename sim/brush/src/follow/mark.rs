@@ -1,4 +1,4 @@
-//! The mark under a head: its middle, and the offset of the handle from a pen's point that it needs.
+//! The mark under a head: its middle, and the offset of the handle that puts it at a pen's point.
 
 use glam::{DVec2, DVec3};
 use maulstick_num::geometry::{Rigid, rotation};
@@ -12,14 +12,14 @@ use crate::head_solver::{HeadSolver, SolvedHead};
 use crate::solver::Settings;
 use crate::spine_layout::SpineLayout;
 
-/// Strips by which the mark is measured.
+/// Number of strips by which the mark is measured.
 const STRIPS: usize = 200;
-/// Places between two stations that are looked at.
+/// Number of places tested between two stations.
 const BETWEEN: usize = 8;
-/// Cells in which touched places count once, by the width of the head.
+/// Cells per width of the head: touched places in one cell count once.
 const CELLS: f64 = 20.0;
 
-/// Film of a brush that has painted a little: a full one reaches farther only at first, µm.
+/// Film on a brush that has painted a little, µm; a full one reaches farther only at first.
 const FILM_UM: f64 = 420.0;
 
 /// Additional depth, beyond the tooth, to which a fully pressed head sinks among its own bristles, mm.
@@ -31,7 +31,7 @@ pub struct Mark {
     head: Head,
     pose: HeadPose,
     cell_m: f64,
-    /// Of a film of paint and half a strip.
+    /// Reach of a film of paint and half a strip, m.
     reach_m: f64,
     lift_m: f64,
     sink_m: f64,
@@ -59,7 +59,7 @@ impl Mark {
         }
     }
 
-    /// The middle of the contact of a head at pose `brush` over the surface z = 0, bent by `angles`, m; `None` if it
+    /// Middle of the contact of a head at pose `brush` over the surface z = 0, bent by `angles`, m; `None` if it
     /// touches nothing.
     pub fn middle(&mut self, brush: &Rigid, angles: &[[f32; 2]]) -> Option<DVec2> {
         let hold = Hold {
@@ -89,7 +89,7 @@ impl Mark {
         Some(least + sum * (self.cell_m / count))
     }
 
-    /// Notes the places of strips that reach the surface.
+    /// Collects the places of strips that reach the surface.
     fn touch(&mut self) {
         let (pose, count) = (&self.pose, self.head.strips());
         let press = f64::from(pose.press);
@@ -124,18 +124,18 @@ pub fn point_of(handle: &Rigid) -> DVec2 {
 
 /// Leans of the table, degrees from upright.
 const LEANS: [f64; 7] = [0.0, 12.0, 24.0, 36.0, 48.0, 64.0, 85.0];
-/// Depths of the table: how far the handle is lowered along its axis, by the length of the head.
+/// Depths of the table: lowering of the handle along its axis, by the length of the head.
 const DEPTHS: [f64; 8] = [0.0, 0.02, 0.06, 0.12, 0.2, 0.3, 0.45, 0.9];
-/// Turns about the handle's axis of a head that is no ring.
+/// Number of turns about the handle's axis, for a head that is no ring.
 const TURNS: usize = 12;
-/// A handle leans by its head's bend where it leans less than about so much itself, rad.
+/// Lean, rad, below which the bend of the head also decides to which side a handle leans.
 const UPRIGHT: f64 = 0.05;
 
-/// Offset of the middle of a head's mark from the point of its handle when it is set down: a table, solved.
+/// Offset of the middle of a head's mark from the point of its handle when it is set down, as a solved table.
 #[derive(Clone, Debug)]
 pub struct Beside {
     turns: usize,
-    /// Of a handle that leans to the right: lean after lean, turn after turn, depth after depth, m.
+    /// Offsets for a handle that leans to the right, ordered by lean, then turn, then depth, m.
     table: Vec<DVec2>,
 }
 
@@ -177,8 +177,8 @@ impl Beside {
         Self { turns, table }
     }
 
-    /// The middle of the mark relative to the point of `handle`, over the surface z = 0 with a head of `length_m` that
-    /// is `bent` to one side; the handle counts as lowered onto the surface. All m.
+    /// Offset of the mark's middle from the point of `handle`, over the surface z = 0 with a head of `length_m` that
+    /// is `bent` to one side, all in m. The handle counts as lowered onto the surface.
     #[must_use]
     pub fn at(&self, handle: &Rigid, bent: DVec2, length_m: f64) -> DVec2 {
         let axis = handle.vector(DVec3::Z);
@@ -205,7 +205,7 @@ impl Beside {
     }
 }
 
-/// The interval of rising places that holds `value`, and where in it.
+/// Index of the interval of ascending places that holds `value`, and the fraction within it.
 fn place(places: &[f64], value: f64) -> (usize, f64) {
     let last = places.len() - 2;
     let i = places

@@ -20,9 +20,10 @@ use crate::solver::Settings;
 use crate::speed_limit::SpeedLimit;
 use crate::spine_layout::SpineLayout;
 
-/// Longest pause between two samples in contact that is crossed along their path, ns; a longer one begins a stroke.
+/// Longest pause between two samples in contact that is interpolated, ns; a longer one begins a stroke.
 pub const BRIDGED_NS: u64 = 300_000_000;
-/// Trial landings of a pen that find its mark: an upright head may bend otherwise with its handle beside the point.
+/// Number of trial landings by which a pen finds its mark: an upright head may bend differently with its handle
+/// beside the point.
 const LANDINGS: usize = 2;
 
 /// A brush in the hand.
@@ -34,13 +35,13 @@ pub struct BrushModel {
     settings: Settings,
     solver: HeadSolver,
     mark: Mark,
-    /// Solved when a pen first holds the brush.
+    /// Table of marks, solved when a pen first holds the brush.
     beside: Option<Beside>,
     desk: Option<Desk>,
     follows: Option<Origin>,
     tracked: Option<TrackedBrush>,
     speed: SpeedLimit,
-    /// Samples at which it began anew because the handle was too fast.
+    /// Number of restarts because the handle was too fast.
     too_fast: u64,
     strokes: StrokeCount,
     /// Factor on the stiffness of the file.
@@ -49,11 +50,11 @@ pub struct BrushModel {
     wetness: f64,
 }
 
-/// The brush after a sample. Lengths are the desk's, axes those of the surface.
+/// State of the brush after a sample. Lengths are the desk's, axes those of the surface.
 #[derive(Clone, Debug)]
 struct TrackedBrush {
     surface: u32,
-    /// Its zoom: on a canvas that is larger the brush bends otherwise.
+    /// Zoom of the surface: on a larger canvas the brush bends differently.
     zoom: f64,
     head: SolvedHead,
     /// Newest sample of the device.
@@ -68,18 +69,18 @@ struct TrackedBrush {
     lead: Lead,
     /// Bend of the head along the surface.
     bent: DVec2,
-    /// The normal force of all contacts there, N.
+    /// Normal force of all contacts along that surface's normal, N.
     force_n: f64,
-    /// The sample before the newest one, if the brush touched there and has since.
+    /// The sample before the newest one, if the brush has touched since.
     before: Option<Sampled>,
-    /// Cells from the newest sample back to where the head was solved last.
+    /// Path length from the last solve to the newest sample, m.
     left_over_m: f64,
-    /// Samples since the pen was set down, while it is not known where it goes.
+    /// Samples since the pen was set down, while its direction is unknown.
     waits: Waiting,
 }
 
 impl BrushModel {
-    /// A brush; `depth_share` is the share of its head's length that full pressure presses in.
+    /// A model of the brush `file`; `depth_share` is the depth at full pressure as a share of the head's length.
     #[must_use]
     pub fn new(file: BrushFile, depth_share: f64) -> Self {
         let tuft = SpineLayout::of(&file);
@@ -104,7 +105,7 @@ impl BrushModel {
         }
     }
 
-    /// Takes up another brush, as stiff or soft as it was tuned; strokes are counted on.
+    /// Takes up another brush with the same tuned stiffness; the count of strokes continues.
     pub fn take_up(&mut self, file: BrushFile) {
         self.tuft = SpineLayout::of(&file);
         self.tuft.stiffen(self.tuned);
@@ -120,12 +121,12 @@ impl BrushModel {
         &self.file
     }
 
-    /// Puts the brush over another scene; before the first, samples give no state.
+    /// Puts the brush over another scene; without one, samples give no state.
     pub fn set_scene(&mut self, scene: &Scene) {
         self.desk = Some(Desk::of(scene));
     }
 
-    /// Makes the head stiffer than its file says by this factor, or softer; it keeps its shape.
+    /// Multiplies the stiffness of the head's file by `factor`; its shape stays.
     pub fn tune(&mut self, factor: f64) {
         if factor != self.tuned && factor.is_finite() && factor > 0.0 {
             self.tuned = factor;
@@ -136,7 +137,7 @@ impl BrushModel {
         }
     }
 
-    /// Soaks the head: 0 as in its file, 1 wet through, when its hairs stick together most.
+    /// Sets the wetness of the head: 0 as in its file, 1 soaked, where its hairs stick together most.
     pub fn soak(&mut self, wetness: f64) {
         let [made, soaked] = self.file.spines.bond;
         self.wetness = wetness.clamp(0.0, 1.0);
@@ -149,7 +150,7 @@ impl BrushModel {
         self.desk.is_some()
     }
 
-    /// The surface that the brush is over, or the canvas.
+    /// The surface below the brush, or the canvas.
     #[must_use]
     pub fn plane(&self) -> Option<&Plane> {
         let surface = self
@@ -159,34 +160,34 @@ impl BrushModel {
         self.desk.as_ref()?.plane(surface)
     }
 
-    /// The desk, for who needs its planes.
+    /// The planes of the desk.
     #[must_use]
     pub fn desk(&self) -> Option<&Desk> {
         self.desk.as_ref()
     }
 
-    /// Samples so far at which the handle in contact was faster than [`FASTEST_M_S`](crate::speed_limit::FASTEST_M_S).
+    /// Number of samples at which the handle in contact was faster than
+    /// [`FASTEST_M_S`](crate::speed_limit::FASTEST_M_S).
     #[must_use]
     pub fn too_fast(&self) -> u64 {
         self.too_fast
     }
 
-    /// Begins anew at the next sample: those between it and the newest one are not known. The solves of a pen that still
-    /// waited to be set down.
+    /// Restarts at the next sample, because those in between are unknown. Returns the solves of a pen that was still
+    /// waiting to be set down.
     #[must_use]
     pub fn begin_anew(&mut self) -> Vec<Solve> {
         self.give_up()
     }
 
-    /// Follows one sample of the device `origin`: empty while there is no scene, else the solves on the path to it, the
-    /// last at the sample itself.
+    /// Solves on the path to one sample of the device `origin`, the last at the sample itself; empty without a scene.
     ///
-    /// A touching brush is solved each time it has moved by about a step, counted on across samples, so that its path
-    /// does not depend on how often it is sampled; between two of these a sample gives a preview. A pen lifts at its
-    /// sample; one that is set down is shown at once, and [waits](setting_down) for the direction of its stroke. A pause
-    /// of up to [`BRIDGED_NS`] in contact is crossed like any path between two samples. A longer one, another device, time
-    /// that does not advance, a zoom and a handle that is too fast restart the solver at the new pose: the solve says so,
-    /// and nothing is painted from the one before to it. After a pause alone the head stays bent as it was.
+    /// A touching brush is solved each time it has moved by about a step. Steps are counted across samples, so that
+    /// the path does not depend on the sample rate; a sample between two steps gives a preview. A pen lifts at its
+    /// sample; one that is set down is shown at once, and [waits](setting_down) for the direction of its stroke. A
+    /// pause of up to [`BRIDGED_NS`] in contact is crossed like any path between two samples. A longer one, another
+    /// device, time that does not advance, a zoom and a handle that is too fast restart the solver at the new pose;
+    /// the solve says so, and nothing is painted up to it. After a pause alone the head keeps its bend.
     pub fn follow(&mut self, origin: Origin, event_ns: u64, sample: &StylusSample) -> Vec<Solve> {
         let mut solves = Vec::new();
         if self.follows != Some(origin) {
@@ -261,7 +262,7 @@ impl BrushModel {
                 let mut solve = begins
                     .unwrap_or_else(|| self.land(&mut tracked, here, sample.in_air(), &plane));
                 if is_pen && sample.in_air() && tracked.head.touches() {
-                    // It was let go so far away that no bend could be followed there.
+                    // The pen was released too far away to follow a bend there.
                     tracked.head = SolvedHead::at_rest(&self.tuft, &here.pose);
                     solve = self.land(&mut tracked, here, true, &plane);
                 }
@@ -284,8 +285,8 @@ impl BrushModel {
         solves
     }
 
-    /// Begins another stroke with a head that is bent as it was before a pause in contact: one that
-    /// landed anew would be dragged round to there, and leave a notch.
+    /// Begins another stroke with the bend from before a pause in contact: a head that landed anew would be dragged
+    /// round to that bend, and leave a notch.
     fn resume(&mut self, tracked: &mut TrackedBrush, here: Sampled, plane: &Plane) -> Solve {
         (tracked.before, tracked.left_over_m) = (None, 0.0);
         let brush = self.placed(tracked, &here);
@@ -296,7 +297,7 @@ impl BrushModel {
         solve
     }
 
-    /// Solves a brush that touched nothing at a sample. A pen is posed so that its mark is at its point.
+    /// Solves a brush that was in the air at the previous sample. A pen is posed so that its mark is at its point.
     fn land(
         &mut self,
         tracked: &mut TrackedBrush,
@@ -330,7 +331,7 @@ impl BrushModel {
         brush
     }
 
-    /// Leads a pen after a path, so that the mark comes to its point.
+    /// Updates the lead of a pen after a path, so that the mark comes to its point.
     fn lead(&mut self, tracked: &mut TrackedBrush, end: &Sampled, way_m: f64) {
         if !tracked.is_pen {
             return;
@@ -350,7 +351,7 @@ impl BrushModel {
         self.beside.as_ref().map_or(DVec2::ZERO, of)
     }
 
-    /// Solves the table of marks, unless it is known.
+    /// Solves the table of marks if it is absent.
     fn solve_table(&mut self) {
         if self.beside.is_none() {
             let (layout, length) = (self.file.spines.layout, self.file.length_m());
@@ -359,8 +360,7 @@ impl BrushModel {
         }
     }
 
-    /// The surface that a sample is over; a stroke belongs to the one where it began, also where the pen presses and the
-    /// head touches nothing, beyond its edge.
+    /// Surface below a sample. A stroke stays on the surface where it began, even beyond its edge.
     fn plane_under(&self, sample: &StylusSample) -> Option<Plane> {
         let desk = self.desk.as_ref()?;
         let in_stroke = |tracked: &&TrackedBrush| tracked.is_pressed || tracked.head.touches();
@@ -377,7 +377,8 @@ impl BrushModel {
         let mut converged = self.bend(tracked, &brush, plane);
         let loses = tracked.is_pressed && (touched || !converged) && !tracked.head.touches();
         if loses && self.lowest_at_rest(&brush) < 0.0 {
-            // Bent away from a surface that it would reach unbent: it would stay so, and leave the stroke bare.
+            // The head is bent away from a surface that it would reach unbent; kept so, it would leave a gap in the
+            // stroke.
             tracked.head = SolvedHead::at_rest(&self.tuft, &brush);
             converged = self.bend(tracked, &brush, plane);
         }
@@ -421,8 +422,8 @@ impl BrushModel {
             .solve(room, &self.tuft, brush, &obstacles, settings)
     }
 
-    /// A stroke lasts from one solve to the next, however long the pause between samples, while the brush touches or its
-    /// pen presses on: also where it touches nothing, beyond an edge.
+    /// Extends the stroke to the next solve, however long the pause between samples, while the brush touches or its
+    /// pen is pressed, even beyond an edge.
     fn stay(&mut self, tracked: &TrackedBrush, until_ns: u64) {
         let presses_on = tracked.is_pressed && tracked.stroke == self.strokes.number();
         if tracked.head.touches() || presses_on && tracked.stroke > 0 {

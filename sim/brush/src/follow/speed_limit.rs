@@ -1,15 +1,15 @@
-//! Speed limit of a brush that touches: twenty metres a second, which no hand exceeds.
+//! Speed limit of a touching brush: twenty metres a second, which no hand exceeds.
 //!
-//! The way between two samples is solved step by step, so a stream of samples that are too far apart would be more work
-//! than there is time. Speed is measured over a frame, not between two samples: a device whose reports wait, or a window
-//! that is late, gives several at once.
+//! The path between two samples is solved step by step, so samples too far apart would take more work than there is
+//! time. Speed is measured over a frame, not between two samples, because a device with delayed reports, or a late
+//! window, gives several at once.
 
 /// Greatest speed of a handle in contact, m/s.
 pub const FASTEST_M_S: f64 = 20.0;
-/// Time over which it is measured, s: a frame of a window.
+/// Time over which the speed is measured, s: a frame of a window.
 const FRAME_S: f64 = 0.016;
 
-/// The way that a handle may still go, as a bucket that fills by [`FASTEST_M_S`].
+/// Remaining path of a handle, a bucket that fills by [`FASTEST_M_S`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedLimit {
     spare_m: f64,
@@ -24,8 +24,8 @@ impl Default for SpeedLimit {
 }
 
 impl SpeedLimit {
-    /// Lets `time_ns` pass in which the handle goes `way_m`, 0 in the air; false where that is too fast, and where it is
-    /// not finite. Such a way leaves none to spare, so that of a flood nothing passes until it is as slow as a hand.
+    /// Lets `time_ns` pass in which the handle moves by `way_m`, 0 in the air; false where that is too fast or not
+    /// finite. Such a move empties the bucket, so that nothing of a flood passes until it is as slow as a hand.
     pub fn passes(&mut self, way_m: f64, time_ns: u64) -> bool {
         let room_m = self.spare_m + FASTEST_M_S * 1e-9 * time_ns as f64;
         let passes = way_m <= room_m;
@@ -41,7 +41,7 @@ mod tests {
 
     const MS: u64 = 1_000_000;
 
-    /// Number of samples that pass, of those that are `way_m` and `time_ns` apart.
+    /// Number of samples that pass, out of `count` that are `way_m` and `time_ns` apart.
     fn passing(count: u32, way_m: f64, time_ns: u64) -> u32 {
         let mut limit = SpeedLimit::default();
         let mut passing = 0;

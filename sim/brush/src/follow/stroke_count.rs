@@ -1,6 +1,6 @@
-//! Numbers of strokes: contacts less than a gap apart have the same.
+//! Numbers of strokes: contacts separated by less than a gap share one.
 
-/// Contacts less than this apart are one stroke, ns.
+/// Gap between contacts from which they are two strokes, ns.
 const STROKE_GAP_NS: u64 = 150_000_000;
 
 /// Numbers the strokes of a brush, from 1.
@@ -17,7 +17,7 @@ impl StrokeCount {
         self.number
     }
 
-    /// The newest stroke lasts until `ns`, whatever touches.
+    /// Extends the newest stroke to `ns`, with or without contact.
     pub(crate) const fn extend(&mut self, ns: u64) {
         self.end_ns = ns;
     }

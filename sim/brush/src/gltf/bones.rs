@@ -1,4 +1,4 @@
-//! The bones: the chains that make spines, their positions, and their stiffness.
+//! Bones: the chains that make spines, their positions, and their stiffness.
 
 use std::collections::BTreeMap;
 
@@ -18,18 +18,18 @@ use crate::file::sections::Chain;
 
 /// Spines of a head at most.
 const MOST_SPINES: usize = 24;
-/// A shorter bone has no direction, mm.
+/// Length below which a bone has no direction, mm.
 const LEAST_MM: f64 = 1e-3;
-/// Joints that differ by more than this share of the model's size were posed.
+/// Difference of joints, as a share of the model's size, above which the model was exported posed.
 const POSED: f64 = 1e-3;
 
 /// The joints of a skin, numbered as there.
 pub(super) struct Bones {
     names: Vec<String>,
     properties: Vec<Properties>,
-    /// Beginning of each, brush frame, mm.
+    /// Heads of the bones, brush frame, mm.
     heads: Vec<DVec3>,
-    /// Unit y axis of each in the brush frame: where a bone of Blender points.
+    /// Unit y axis of each in the brush frame: the direction of a bone in Blender.
     ways: Vec<DVec3>,
     /// The joints of each spine, from the ferrule to the point.
     spines: Vec<Vec<usize>>,
@@ -109,7 +109,7 @@ impl Bones {
         self.spines.iter().map(line).collect()
     }
 
-    /// The spines as a brush file has them; what the model does not say is as in `like`.
+    /// The spines as a brush file has them; properties that the model lacks are those of `like`.
     pub(super) fn chains(&self, lines: &[Line], like: &BrushFile) -> Vec<Chain> {
         let chain = |(spine, line): (&Vec<usize>, &Line)| {
             let stiffness = self.stiffness(spine, &line.segments, like);
@@ -179,8 +179,8 @@ impl Bones {
             .collect()
     }
 
-    /// Weights of a vertex at `at` on joints counted through all spines, instead of the joints of the skin. A root bone
-    /// that is no spine itself hands its share to the nearest spine.
+    /// Weights of a vertex at `at` on joints counted through all spines, instead of the joints of the skin. A root
+    /// bone that is no spine itself gives its share to the nearest spine.
     pub(super) fn carriers(&self, at: DVec3, weights: &[(usize, f64)]) -> Vec<(usize, f64)> {
         let from = |spine: &Vec<usize>| (self.heads[spine[0]] - at).length_squared();
         let nearest = self
@@ -203,7 +203,7 @@ impl Bones {
     }
 }
 
-/// The joints of each spine: chains of joints that begin at no joint's child, or at those of one
+/// The joints of each spine: chains of joints that begin at a joint without a parent, or at the children of one
 /// common root.
 fn spines(
     tree: &Tree,
@@ -265,11 +265,10 @@ fn spines(
     roots.into_iter().map(chain).collect()
 }
 
-/// From where the mesh was bound to where it stands at rest, world frame: one motion for all joints.
-/// Without inverse bind matrices it is the mesh's own node that says where the mesh stands.
+/// Motion from the mesh's bind pose to its rest pose, world frame, the same for all joints; without inverse bind
+/// matrices, the transform of the mesh's own node.
 ///
-/// # Errors
-/// [`GltfError::Posed`], or that the matrices cannot be read.
+/// # Errors [`GltfError::Posed`], or that the matrices cannot be read.
 pub(super) fn bind(
     document: &Document,
     tree: &Tree,

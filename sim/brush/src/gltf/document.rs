@@ -1,7 +1,7 @@
 //! The file itself: its JSON, its buffers, and lists of numbers in them.
 //!
-//! The `gltf` crate reads and validates the JSON, so that every index in it is one; the bytes behind
-//! its accessors are read here, where all bounds are checked.
+//! The `gltf` crate reads and validates the JSON, so that every index in it is valid; the bytes behind its accessors
+//! are read here, with all bounds checked.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -11,12 +11,12 @@ use gltf::{Accessor, Node};
 
 use super::error::GltfError;
 
-/// Bytes before the first chunk of a .glb.
+/// Length of a .glb's header, bytes.
 const HEADER: usize = 12;
 
 /// A glTF file in memory.
 pub(super) struct Document {
-    /// Its validated JSON.
+    /// Validated JSON.
     pub(super) json: gltf::Document,
     /// The bytes of each buffer.
     buffers: Vec<Vec<u8>>,
@@ -57,10 +57,9 @@ impl Document {
         })
     }
 
-    /// The numbers of an accessor, one after another; unsigned ones are shares of their greatest.
+    /// The numbers of an accessor in order; unsigned ones are normalised to 0..1.
     ///
-    /// # Errors
-    /// [`GltfError::Data`] or [`GltfError::NotFinite`].
+    /// # Errors [`GltfError::Data`] or [`GltfError::NotFinite`].
     pub(super) fn numbers(
         &self,
         accessor: &Accessor<'_>,
@@ -83,10 +82,9 @@ impl Document {
         }
     }
 
-    /// The whole numbers of an accessor, one after another.
+    /// The integers of an accessor in order.
     ///
-    /// # Errors
-    /// [`GltfError::Data`].
+    /// # Errors [`GltfError::Data`].
     pub(super) fn indices(
         &self,
         accessor: &Accessor<'_>,
@@ -143,7 +141,7 @@ pub(super) struct List {
 }
 
 impl List {
-    /// The error that it cannot be read.
+    /// The error of reading this list, for the reason `why`.
     pub(super) fn fault(&self, why: String) -> GltfError {
         GltfError::Data {
             what: self.what,
@@ -165,7 +163,7 @@ fn bytes_of<const N: usize>(bytes: &[u8]) -> [u8; N] {
     std::array::from_fn(|i| bytes[i])
 }
 
-/// Checks that a .glb has as many bytes as its header says.
+/// Checks that a .glb has the number of bytes in its header.
 fn whole(bytes: &[u8]) -> Result<(), GltfError> {
     if !bytes.starts_with(b"glTF") {
         return Ok(());
@@ -189,8 +187,8 @@ fn whole(bytes: &[u8]) -> Result<(), GltfError> {
     }
 }
 
-/// Checks that the accessors of all vertices are there: gltf-json 1.4.1 looks at that of `POSITION`
-/// before it has checked its number.
+/// Checks that the accessors of all vertices exist: gltf-json 1.4.1 reads that of `POSITION` before it has checked
+/// its number.
 fn attributes(json: &gltf::json::Root) -> Result<(), GltfError> {
     let primitives = json.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let mut accessors = primitives.flat_map(|primitive| primitive.attributes.values());

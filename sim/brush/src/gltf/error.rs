@@ -2,10 +2,10 @@
 
 use crate::file::BrushError;
 
-/// The reason why a glTF file gives no brush.
+/// Errors of reading a brush from a glTF file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GltfError {
-    /// The bytes are no glTF 2.0, or break its rules.
+    /// The bytes are not glTF 2.0, or break its rules.
     #[error("this is not a readable glTF 2.0 file ({0}); export it as glTF Binary (.glb)")]
     NotGltf(String),
     /// The file ends too early.
@@ -13,12 +13,12 @@ pub enum GltfError {
     Truncated {
         /// The part that ends too early.
         what: String,
-        /// Bytes that are there.
+        /// Number of bytes in the file.
         has: usize,
-        /// Bytes that should be there.
+        /// Number of bytes needed.
         wants: usize,
     },
-    /// Data lie in another file.
+    /// The data are in another file.
     #[error(
         "the data are in another file, '{uri}'; export as glTF Binary (.glb), which is one file"
     )]
@@ -29,17 +29,17 @@ pub enum GltfError {
     /// A list of numbers cannot be read.
     #[error("{what} of '{node}' {why}; export it again, without compression")]
     Data {
-        /// The list, for example `POSITION`.
+        /// Name of the list, for example `POSITION`.
         what: &'static str,
         /// The node it belongs to.
         node: String,
-        /// The error.
+        /// Reason that it cannot be read.
         why: String,
     },
     /// NaN or infinity.
     #[error("{what} of '{node}' is not finite; look for a scale of 0 or a broken modifier")]
     NotFinite {
-        /// The list or field.
+        /// Name of the list or field.
         what: &'static str,
         /// The node it belongs to.
         node: String,
@@ -52,10 +52,10 @@ pub enum GltfError {
         /// The reason.
         why: &'static str,
     },
-    /// Nothing to paint with.
+    /// The file has no mesh.
     #[error("the file has no mesh; select the head and its armature, then export")]
     NoMesh,
-    /// A mesh that nothing bends.
+    /// A mesh without a skin.
     #[error(
         "'{node}' is a mesh without a skin; parent it to an armature (Ctrl+P, With Automatic Weights)"
     )]
@@ -63,7 +63,7 @@ pub enum GltfError {
         /// The mesh object.
         node: String,
     },
-    /// A skin without spines.
+    /// The skin has no joints.
     #[error("the armature of '{node}' has no bones; give each spine a chain of them")]
     NoJoints {
         /// The mesh object.
@@ -91,10 +91,10 @@ pub enum GltfError {
         /// Largest number of joints.
         most: usize,
     },
-    /// Too much of something else.
+    /// Too many of another item.
     #[error("there are {count} {what}, but must be at most {most}")]
     TooMany {
-        /// Of what.
+        /// The item.
         what: &'static str,
         /// Their number.
         count: usize,
@@ -106,7 +106,7 @@ pub enum GltfError {
     NoLength {
         /// The bone.
         bone: String,
-        /// Advice.
+        /// Reason, with advice.
         why: &'static str,
     },
     /// The model was exported bent.
@@ -115,7 +115,7 @@ pub enum GltfError {
         /// The bone.
         bone: String,
     },
-    /// Vertices that would stay behind.
+    /// Vertices without weights, which would not move with the head.
     #[error(
         "{count} vertices of '{node}' have no weights, the first at ({}, {}, {}) mm; \
          assign them to bones (Weights > Assign Automatic from Bones)",
@@ -129,7 +129,7 @@ pub enum GltfError {
         /// Position of the first one, brush frame, mm.
         at_mm: [f64; 3],
     },
-    /// The bristles point in another direction, or the head is elsewhere.
+    /// The bristles point in a wrong direction, or the head is not at the origin.
     #[error(
         "{what} does not hang along -Z of Blender; the origin is where head and ferrule meet, \
          and the bristles go down from it (in the exporter, +Y Up stays on)"
@@ -138,19 +138,19 @@ pub enum GltfError {
         /// Bone or mesh.
         what: String,
     },
-    /// A head of no size that a brush has.
+    /// A head whose size is out of range.
     #[error(
         "the head's {what} is {mm} mm, but must be {range} mm; glTF is in metres, so .01 is 10 mm"
     )]
     Size {
-        /// Width, thickness or length.
+        /// The dimension: width, thickness or length.
         what: &'static str,
         /// The size, mm.
         mm: f64,
         /// Allowed range, mm.
         range: String,
     },
-    /// A custom property of the wrong kind or out of its range.
+    /// A custom property of a wrong type or out of range.
     #[error("'{key}' of '{node}' is {value}, but must be {range}")]
     Property {
         /// Object or bone.
@@ -162,7 +162,7 @@ pub enum GltfError {
         /// Allowed range.
         range: String,
     },
-    /// A custom property that is nearly one of ours.
+    /// A custom property whose name resembles a known one.
     #[error("'{key}' of '{node}' is not a property of a brush; did you mean '{nearest}'{place}?")]
     Misspelt {
         /// Object or bone.
@@ -171,10 +171,10 @@ pub enum GltfError {
         key: String,
         /// The nearest one.
         nearest: &'static str,
-        /// Place where that one belongs, if elsewhere.
+        /// Owner of the nearest property, if it is another.
         place: &'static str,
     },
-    /// The whole is no brush that can be simulated.
+    /// The result is not a valid brush.
     #[error("{0}")]
     Brush(#[from] BrushError),
 }

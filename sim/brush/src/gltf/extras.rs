@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use super::error::GltfError;
 
-/// A numeric property: its name, its least and its greatest value, and whether it is whole.
+/// A numeric property: its name, its range, and whether it is an integer.
 struct Number {
     key: &'static str,
     range: [f64; 2],
@@ -43,7 +43,7 @@ const OF_OBJECTS: [Number; 8] = [
     number("recede_mm", 0.0, 10.0),
 ];
 
-/// The one property that is a text.
+/// The only property with a text value.
 const KIND: &str = "kind";
 
 /// Kind of a node, which determines its properties.
@@ -74,10 +74,9 @@ impl Owner {
 pub(super) struct Properties(Map<String, Value>);
 
 impl Properties {
-    /// Those of a node; what is no property of a brush is left out.
+    /// Properties of a node; unknown ones are ignored.
     ///
-    /// # Errors
-    /// [`GltfError::Property`] or [`GltfError::Misspelt`].
+    /// # Errors [`GltfError::Property`] or [`GltfError::Misspelt`].
     pub(super) fn of(
         node: &str,
         owner: Owner,
@@ -122,7 +121,7 @@ impl Properties {
         Ok(Self(properties))
     }
 
-    /// Adds another node's, of which those here stay.
+    /// Adds those of another node that are absent here.
     pub(super) fn or(mut self, other: Self) -> Self {
         for (key, value) in other.0 {
             self.0.entry(key).or_insert(value);
@@ -141,7 +140,7 @@ impl Properties {
     }
 }
 
-/// Refuses a key that is nearly a property, or one of the other owner's.
+/// Rejects a key that resembles a property, or belongs to the other owner.
 fn known(node: &str, owner: Owner, key: &str) -> Result<(), GltfError> {
     let misspelt = |nearest: &'static str, place: &'static str| GltfError::Misspelt {
         node: node.to_owned(),
@@ -162,8 +161,8 @@ fn known(node: &str, owner: Owner, key: &str) -> Result<(), GltfError> {
     }
 }
 
-/// True if a key is a property but for case, a unit after it, or a slip or two: one in a name of four letters, two from
-/// six letters on.
+/// True if a key differs from a property only by case, a unit suffix, or typing errors: one in a name of four
+/// letters, two from six letters on.
 fn near(own: &str, key: &str) -> bool {
     let key = key.to_lowercase();
     let longer = |long: &str, short: &str| {

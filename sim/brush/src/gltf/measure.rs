@@ -5,19 +5,19 @@ use glam::DVec3;
 use crate::file::sections::Outline;
 use crate::subdivide::{Mesh, subdivide};
 
-/// Places along the head at which it is measured, both ends included.
+/// Number of places along the head at which it is measured, both ends included.
 const PLACES: usize = 9;
-/// A cut through a rectangle has corners at 2 of the square of its half widths, one through an
-/// ellipse is at 1 all around.
+/// Threshold between outlines: the corners of a cut through a rectangle are at 2 times the square of its half widths,
+/// an ellipse is at 1 all around.
 const CORNERED: f64 = 1.5;
 
 /// Measurements of a mesh.
 pub(super) struct Measured {
-    /// Of the subdivided surface, which is what paints, mm: twice its greatest distance from the
-    /// middle along x and y.
+    /// Width and thickness of the subdivided surface, which paints, mm: twice its greatest distance from the middle
+    /// along x and y.
     pub(super) across_mm: [f64; 2],
-    /// Place along the head and half the width there by half the widest, along x and y, of the
-    /// control mesh: subdivision would draw in its ends.
+    /// Place along the head and half the width there as a share of the greatest, along x and y, of the control mesh:
+    /// subdivision would draw in its ends.
     pub(super) profiles: [Vec<[f64; 2]>; 2],
     /// Outline of its widest cut, with or without corners.
     pub(super) outline: Outline,
@@ -71,7 +71,7 @@ fn place(i: usize) -> f64 {
     i as f64 / (PLACES - 1) as f64
 }
 
-/// Points where the sides of the faces meet the plane of a height.
+/// Intersections of the faces' sides with the plane of a height.
 fn cut(vertices: &[DVec3], faces: &[Vec<usize>], z: f64) -> Vec<DVec3> {
     let sides = faces
         .iter()
@@ -90,7 +90,7 @@ fn cut(vertices: &[DVec3], faces: &[Vec<usize>], z: f64) -> Vec<DVec3> {
         .collect()
 }
 
-/// Heights nearer than this are the same, mm: single precision a hand's breadth from the origin.
+/// Tolerance of equal heights, mm: single precision a hand's breadth from the origin.
 const NEAR_MM: f64 = 1e-5;
 
 fn below(points: &[DVec3]) -> Vec<DVec3> {
@@ -103,7 +103,7 @@ fn half(points: &[DVec3]) -> Option<[f64; 2]> {
     Some([greatest.x, greatest.y])
 }
 
-/// Places that the mesh does not reach are as the one before, or after.
+/// Values for places that the mesh does not reach: those of the place before, or after.
 fn filled(halves: Vec<Option<[f64; 2]>>) -> Option<Vec<[f64; 2]>> {
     let mut last = halves.iter().flatten().next().copied()?;
     let fill = |half: Option<[f64; 2]>| {

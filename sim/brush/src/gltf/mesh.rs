@@ -1,4 +1,4 @@
-//! The mesh as the file has it, and as it stands in the brush frame.
+//! The mesh as in the file, and as placed in the brush frame.
 
 use glam::{DMat4, DVec3};
 use gltf::accessor::Dimensions;
@@ -9,7 +9,7 @@ use super::brush_mm;
 use super::document::{Document, List, name_of};
 use super::error::GltfError;
 
-/// Vertices of a file at most, before those that a seam has split are one again.
+/// Greatest number of vertices of a file, before those split at seams are merged.
 const MOST_VERTICES: usize = 65_536;
 /// Triangles of a file at most.
 const MOST_TRIANGLES: usize = 16_384;
@@ -26,11 +26,11 @@ pub(super) struct Bound {
 
 /// The mesh in the brush frame.
 pub(super) struct Placed {
-    /// mm.
+    /// Vertex positions, mm.
     pub(super) positions: Vec<DVec3>,
-    /// Joints of the skin and their weights, of which the sum is 1; empty for a vertex without weights.
+    /// Joints of the skin and their weights, which sum to 1; empty for a vertex without weights.
     pub(super) weights: Vec<Vec<(usize, f64)>>,
-    /// Counterclockwise from outside.
+    /// Triangles, counterclockwise from outside.
     pub(super) triangles: Vec<[usize; 3]>,
 }
 
@@ -77,7 +77,7 @@ impl Bound {
         (0..8).map(corner).collect()
     }
 
-    /// As it stands where `world` puts it, m, y up.
+    /// The mesh moved to `world`, m, y up.
     pub(super) fn placed(self, world: &DMat4) -> Placed {
         let place = |p: &DVec3| brush_mm(world.transform_point3(*p));
         let mut triangles = self.triangles;
@@ -93,13 +93,13 @@ impl Bound {
 }
 
 impl Placed {
-    /// A coordinate that is not within `most` of the origin, mm.
+    /// A coordinate farther than `most` from the origin, mm.
     pub(super) fn outside(&self, most: f64) -> Option<f64> {
         let mut coordinates = self.positions.iter().flat_map(|at| at.to_array());
         coordinates.find(|mm| !(-most..=most).contains(mm))
     }
 
-    /// Reach along a direction of the vertices that follow a joint by half or more, mm.
+    /// Reach along a direction of the vertices whose weight on a joint is half or more, mm.
     pub(super) fn reach(&self, joint: usize, from: DVec3, along: DVec3) -> f64 {
         let follows = |weights: &[(usize, f64)]| {
             let own = weights.iter().filter(|(other, _)| *other == joint);
@@ -113,7 +113,7 @@ impl Placed {
     }
 }
 
-/// Weights of which the sum is 1; empty without weights.
+/// Weights normalised to the sum 1; empty without weights.
 fn normalised(weights: &[(usize, f64)]) -> Vec<(usize, f64)> {
     let sum: f64 = weights.iter().map(|(_, weight)| weight).sum();
     if sum > 1e-6 {

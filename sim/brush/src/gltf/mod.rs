@@ -1,5 +1,5 @@
-//! A brush modelled in Blender: glTF 2.0 with an armature for the spines and a skinned mesh for the
-//! head (Khronos, glTF 2.0 specification, § 3.7).
+//! A brush modelled in Blender: glTF 2.0 with an armature for the spines and a skinned mesh for the head (Khronos,
+//! glTF 2.0 specification, § 3.7).
 //!
 //! | of the model | in the brush file |
 //! | --- | --- |
@@ -10,9 +10,9 @@
 //! | property `length_m` of a last bone, m | its length along its y axis, which glTF does not have |
 //! | faces and weights | the skin: seams are welded, and quadrilaterals made whole again |
 //!
-//! Blender's z is up, and its exporter turns that to glTF's y; the brush frame is Blender's, in mm:
-//! bristles along −z, the origin where head and ferrule meet. What the model does not say is as in
-//! the library's `round` of the same width. `docs/brushes.md` says how to model one.
+//! Blender's z is up, and its exporter turns that to glTF's y; the brush frame is Blender's, in mm: bristles along
+//! −z, the origin where head and ferrule meet. Properties that the model lacks are those of the library's `round` of
+//! the same width. `docs/brushes.md` explains modelling.
 
 mod bones;
 mod document;
@@ -38,9 +38,9 @@ use self::tree::Tree;
 use crate::file::BrushFile;
 use crate::file::sections::{Contact, Head, Layout, Load, Spines, Strips, Surface};
 
-/// The library's brush that fills in what a model does not say.
+/// The library's brush that supplies properties a model lacks.
 const LIKE: &str = "round";
-/// Times that the mesh is subdivided, and how far the skin draws back as the head opens, mm.
+/// Number of subdivisions of the mesh, and recession of the skin as the head opens, mm.
 const SKIN: (f64, f64) = (2.0, 0.3);
 /// Coordinates of a brush file's skin at most, mm.
 const FARTHEST_MM: f64 = 500.0;
@@ -49,8 +49,7 @@ const MOST_VERTICES: usize = 4096;
 
 /// Reads a brush from a .glb, or from a .gltf with its data embedded.
 ///
-/// # Errors
-/// [`GltfError`], which says what is wrong with which node and what to do about it.
+/// # Errors [`GltfError`], which names the node, the fault and its remedy.
 pub fn read(bytes: &[u8]) -> Result<BrushFile, GltfError> {
     let document = Document::parse(bytes)?;
     let tree = Tree::of(&document)?;
@@ -69,17 +68,17 @@ pub fn read(bytes: &[u8]) -> Result<BrushFile, GltfError> {
     Ok(brush)
 }
 
-/// A direction in glTF's frame in the brush's, which is Blender's.
+/// A direction in glTF's frame, turned into the brush's, which is Blender's.
 fn brush_axes(world: DVec3) -> DVec3 {
     DVec3::new(world.x, -world.z, world.y)
 }
 
-/// Metres in glTF's frame to mm in the brush's.
+/// A position in glTF's frame, m, in the brush's frame, mm.
 fn brush_mm(world: DVec3) -> DVec3 {
     to_10_nm(brush_axes(world) * 1e3)
 }
 
-/// Without the noise of single precision, mm.
+/// Rounded to 10 nm to remove the noise of single precision, mm.
 fn to_10_nm(mm: DVec3) -> DVec3 {
     (mm * 1e5).round() / 1e5
 }
@@ -177,7 +176,6 @@ fn surface(
     })
 }
 
-/// The whole brush.
 fn brush(
     node: &Node<'_>,
     bones: &Bones,
@@ -232,7 +230,7 @@ fn brush(
             film_um: properties.number("film_um").unwrap_or(like.load.film_um),
             ..like.load
         },
-        // Felt by its own stiffness.
+        // Follows from the head's stiffness.
         force: None,
     })
 }
@@ -251,7 +249,7 @@ fn head(like: Head, measured: Measured, length_mm: f64) -> Head {
     }
 }
 
-/// Friction: who says how a head slides but not how it sticks means both.
+/// Friction; sliding friction alone counts for sticking as well.
 fn contact(like: Contact, properties: &Properties) -> Contact {
     let friction = properties.number("friction");
     let sticking = match friction {

@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-/// Vertices nearer than this share of the mesh's size are one.
-const SAME: f64 = 1e-6;
+/// Distance of vertices to be merged, as a share of the mesh's size.
+const WELD_DISTANCE_SHARE: f64 = 1e-6;
 /// Cosine of the angle, 30°, up to which two triangles of a quadrilateral face the same direction.
 const FLAT: f64 = 0.866;
-/// The least quality of a quadrilateral: 1 − |cos| of its most skewed corner, here about 32°.
+/// Least quality of a quadrilateral: 1 − |cos| of its most skewed corner, here about 32°.
 const SQUARE: f64 = 0.15;
 
-/// Of each vertex the first one at its place.
+/// For each vertex, the first one at the same place.
 pub(super) fn same(positions: &[DVec3]) -> Vec<usize> {
     let low = positions.iter().copied().reduce(DVec3::min);
     let high = positions.iter().copied().reduce(DVec3::max);
@@ -19,7 +19,7 @@ pub(super) fn same(positions: &[DVec3]) -> Vec<usize> {
         (Some(low), Some(high)) => (high - low).length(),
         _ => 0.0,
     };
-    let near = (SAME * size).max(f64::MIN_POSITIVE);
+    let near = (WELD_DISTANCE_SHARE * size).max(f64::MIN_POSITIVE);
     let mut cells: BTreeMap<[i64; 3], Vec<usize>> = BTreeMap::new();
     let mut firsts = Vec::with_capacity(positions.len());
     for (number, at) in positions.iter().enumerate() {
@@ -42,8 +42,8 @@ pub(super) fn same(positions: &[DVec3]) -> Vec<usize> {
     firsts
 }
 
-/// Faces of which triangles that follow each other and make a good quadrilateral are one: of all ways
-/// to pair them up the one of the greatest sum of qualities.
+/// Faces in which successive triangles that make a good quadrilateral are joined: the pairing with the greatest sum
+/// of qualities.
 pub(super) fn quads(positions: &[DVec3], triangles: &[[usize; 3]]) -> Vec<Vec<usize>> {
     let pairs: Vec<Option<(f64, [usize; 4])>> = (0..triangles.len())
         .map(|i| {
@@ -52,7 +52,7 @@ pub(super) fn quads(positions: &[DVec3], triangles: &[[usize; 3]]) -> Vec<Vec<us
             quality(positions, &triangles[i], next, &quad).map(|quality| (quality, quad))
         })
         .collect();
-    // The greatest sum from each triangle on.
+    // Greatest sum of qualities from each triangle to the last.
     let mut best = vec![0.0; triangles.len() + 2];
     let pays = |best: &[f64], i: usize| {
         let paired = pairs[i].map(|(quality, quad)| (quality + best[i + 2], quad));

@@ -1,11 +1,11 @@
-//! Strips that stand beside each other: paint passes between them.
+//! Neighbouring strips, between which paint passes.
 
 use std::cmp::Ordering;
 
 use glam::DVec2;
 
-/// The strips in two orders, in each of which neighbours stand beside each other: in columns across the
-/// thickness, and in rows along the width, to and fro.
+/// The strips in two orders in which neighbours are adjacent: in columns across the thickness, and in rows along the
+/// width, to and fro.
 #[must_use]
 pub(super) fn orders(roots: &[DVec2], half_m: DVec2) -> [Vec<u32>; 2] {
     let places: Vec<DVec2> = roots.iter().map(|root| *root * half_m).collect();

@@ -6,14 +6,14 @@ use super::{Head, STATIONS, place_along, rest_point, smoothstep};
 use crate::file::BrushFile;
 
 impl Head {
-    /// The offsets that bring strips together in clumps: each to the mean of the strips that stand
-    /// nearest to the same seed, the more the nearer to the point.
+    /// The offsets that bring strips together in clumps: each toward the mean of the strips nearest to the same seed,
+    /// increasing toward the point.
     pub(super) fn clump(&mut self, file: &BrushFile, roots: &[DVec2]) {
         let clumps = file.strips.clumps.min(self.strips);
         if clumps == 0 || self.clumping == [0.0; 2] {
             return;
         }
-        // Every so-many-th strip of an even sequence is an even sequence; a line is in order.
+        // Every n-th element of an even sequence is an even sequence; a line is in order.
         let half = DVec2::new(file.radius_m(0.0), file.half_thickness_m(0.0));
         let seed = |clump: usize| roots[clump * self.strips / clumps] * half;
         let distance = |clump: usize, root: DVec2| (seed(clump) - root * half).length_squared();

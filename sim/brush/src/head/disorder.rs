@@ -1,11 +1,11 @@
-//! Disorder of the bristles: it changes each time a brush is loaded, so that no two of its strokes have the same
-//! streaks, nor the same ends.
+//! Disorder of the bristles. It changes each time a brush is loaded, so that no two strokes have the same streaks or
+//! ends.
 
 use super::{Head, STATIONS, place_along, smoothstep};
 
 /// Width of a tress of bristles that stray together, by half the head's width.
 const TRESS: f32 = 0.16;
-/// Offset of a tress at most, by half the head's width and thickness there.
+/// Greatest offset of a tress, by half the head's width and thickness there.
 const STRAY: f32 = 0.04;
 /// Shortening of the shortest bristle, by the head's length.
 const RAGGED: f32 = 0.01;
@@ -13,7 +13,7 @@ const RAGGED: f32 = 0.01;
 const PLANES: [u64; 3] = [11, 12, 13];
 
 impl Head {
-    /// This head with its bristles in the disorder of a seed; seed 0 is as the brush file has it.
+    /// This head with its bristles in the disorder of a seed; seed 0 leaves them as in the brush file.
     #[must_use]
     pub fn disordered(&self, seed: u64) -> Self {
         let mut head = self.clone();
@@ -53,7 +53,7 @@ pub fn noise(seed: u64, [x, y]: [f32; 2]) -> f32 {
     row(0) + (row(1) - row(0)) * v
 }
 
-/// A number in 0 to 1 of a place (finaliser of Murmur 3, Appleby).
+/// Hash of a place as a number in 0 to 1 (finaliser of Murmur 3, Appleby).
 #[must_use]
 pub fn unit(seed: u64, place: [i64; 2]) -> f32 {
     let mut h = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x2545_f491_4f6c_dd1d;

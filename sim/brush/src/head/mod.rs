@@ -1,11 +1,9 @@
-//! The head: bristle strips interpolated from the spines (Baxter 2004, § 3.5.2), and the skin
-//! around them.
+//! The head: bristle strips interpolated from the spines (Baxter 2004, § 3.5.2), and the skin around them.
 //!
-//! Each spine is a curve p_j(s), s from 0 at the ferrule to 1 at the point. A strip's root within the
-//! hull of the spines' roots is their convex sum, and so is the strip, Σ w_j·p_j(s) (eq. 3.16); what
-//! the head's profile adds is an offset for each station, in a frame that turns with the middle of
-//! the head. A root outside the hull has the weights of the nearest point of it. As the head is
-//! pressed down the strips open, and wet ones come together in clumps.
+//! Each spine is a curve p_j(s), s from 0 at the ferrule to 1 at the point. A strip's root within the hull of the
+//! spines' roots is their convex sum, and so is the strip, Σ w_j·p_j(s) (eq. 3.16). The head's profile adds an offset
+//! at each station, in a frame that turns with the middle of the head. A root outside the hull has the weights of the
+//! hull's nearest point. As the head is pressed down the strips open, and wet ones come together in clumps.
 
 mod beside;
 mod clump;
@@ -30,9 +28,9 @@ use crate::spine::SpineShape;
 use crate::spine_layout::SpineLayout;
 use crate::spine_root::SpineRoot;
 
-/// Stations along a strip.
+/// Number of stations along a strip.
 pub const STATIONS: usize = 9;
-/// The head is fully open when its point would be this share of its length below the surface.
+/// Depth of the point below the surface, as a share of the head's length, at which the head is fully open.
 const OPEN_AT: f64 = 0.35;
 
 /// The strips of a brush.
@@ -41,13 +39,13 @@ pub struct Head {
     spine_roots: Vec<SpineRoot>,
     joints: usize,
     strips: usize,
-    /// Weights, a plane a spine.
+    /// Weights of the strips, one plane a spine.
     weights: Vec<Vec<f32>>,
     /// Offsets of the profile from the spines' sum, brush frame, m: planes of x, y and z, `station · strips + strip`.
     closed: [Vec<f32>; 3],
-    /// Offsets added to that when pressed open: x and y.
+    /// Offsets in x and y, added when pressed open, m.
     opening: [Vec<f32>; 2],
-    /// Clumping added to that on a clean brush and on a full one.
+    /// Clumping on a clean brush and on a full one.
     clumping: [f32; 2],
     clumped: Option<[Vec<f32>; 3]>,
     /// Roots in shares of half the ferrule's width and thickness.
@@ -56,9 +54,9 @@ pub struct Head {
     around: Vec<u32>,
     /// Strips in two orders in which neighbours stand beside each other.
     beside: [Vec<u32>; 2],
-    /// Seeded, 0 to 1: how far a strip keeps off the surface while the head is hardly pressed.
+    /// Height of each strip over the surface while the head is hardly pressed, 0 to 1, seeded.
     lift: Vec<f32>,
-    /// Seeded, about 1: how much paint a strip takes by the mean of all.
+    /// Paint capacity of each strip by the mean of all, seeded.
     capacity: Vec<f32>,
     /// Tangents of the middle of the head at rest.
     rest: Curve,
@@ -73,15 +71,15 @@ pub struct Head {
 /// Strips in space: planes of coordinates, `station · strips + strip`, station 0 at the ferrule.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HeadPose {
-    /// Right.
+    /// Coordinates to the right.
     pub x: Vec<f32>,
-    /// Up along the surface.
+    /// Coordinates up along the surface.
     pub y: Vec<f32>,
-    /// Above the surface: never below it.
+    /// Height above the surface, never negative.
     pub z: Vec<f32>,
     /// Opening of the head under pressure, 0 to 1.
     pub press: f32,
-    /// Share of the strips that shows beside the skin, 0 to 1: all of them where the head is open or has run dry.
+    /// Share of the strips that shows beside the skin, 0 to 1; 1 where the head is open or has run dry.
     pub splay: f32,
     /// Bend of the point by the head's length, in the ferrule's cross-section: x and y of the brush frame.
     pub bend: [f32; 2],
@@ -96,7 +94,7 @@ pub struct Hold<'a> {
     pub brush: &'a Rigid,
     /// θ and φ of all joints, spine after spine.
     pub angles: &'a [[f32; 2]],
-    /// Units of the pose a metre.
+    /// Units of the pose per metre.
     pub per_m: f64,
     /// Wetness of the brush, 0 to 1: wet bristles clump.
     pub wetness: f32,
@@ -137,7 +135,7 @@ impl Head {
         let (_, rest) = middle(&curves, DVec3::NEG_Z);
         let unruly = |range: f64, random: &mut Random| range * (2.0 * random.unit() - 1.0);
         let rigid = file.head.hair == Hair::Steel;
-        // A blade keeps off as a whole.
+        // A blade lifts as a whole.
         let lift = |own: f64| if rigid { 1.0 } else { own as f32 };
         // A thinned head has the first strips of the whole one.
         let whole = (count as f64 * file.strips.stands_for).round() as usize;
@@ -180,7 +178,7 @@ impl Head {
         head
     }
 
-    /// The offsets that put the strips at rest onto the head's profile.
+    /// Computes the offsets that fit the strips at rest to the head's profile.
     fn lay(&mut self, file: &BrushFile, roots: &[DVec2], curves: &[Curve]) {
         let opened = file.strips.open * 0.5e-3 * file.head.width_mm;
         for station in 0..STATIONS {
@@ -222,7 +220,7 @@ impl Head {
         &self.roots
     }
 
-    /// By strip, the nearest of those that a thinned head keeps, which stands for it.
+    /// For each strip, the nearest of the first `strips`, which represents it in a thinned head.
     #[must_use]
     pub fn nearest_of_first(&self, strips: usize) -> Vec<usize> {
         let first = &self.roots[..strips.min(self.strips)];
@@ -245,8 +243,8 @@ impl Head {
         self.around[number.min(self.strips - 1)] as usize
     }
 
-    /// The strips in two orders, in each of which neighbours stand beside each other: in columns across the
-    /// thickness, and in rows along the width.
+    /// The strips in two orders in which neighbours are adjacent: in columns across the thickness, and in rows along
+    /// the width.
     #[must_use]
     pub fn beside(&self) -> &[Vec<u32>; 2] {
         &self.beside
@@ -374,7 +372,7 @@ impl Head {
     }
 }
 
-/// Numbers of roots by their angle around the middle.
+/// Roots ordered by their angle around the middle.
 fn order_around(roots: &[DVec2]) -> Vec<u32> {
     let turn = |i: u32| {
         let root = roots[i as usize];

@@ -1,5 +1,5 @@
-//! Positions of the strips in the ferrule (Baxter 2004, § 3.5.2): at random along a line, or in the triangles of
-//! Delaunay between the spines and the ferrule's edge.
+//! Positions of the strips in the ferrule (Baxter 2004, § 3.5.2): at random along a line, or in the Delaunay
+//! triangles between the spines and the ferrule's edge.
 
 use delaunator::{Point, triangulate};
 use glam::DVec2;
@@ -10,12 +10,11 @@ use rand_pcg::rand_core::Rng as _;
 use crate::file::BrushFile;
 use crate::file::sections::Outline;
 
-/// Points of the ferrule's edge.
+/// Number of points on the ferrule's edge.
 const EDGE: usize = 32;
-/// The exponent of the superellipse that a flat ferrule is.
+/// Exponent of the superellipse of a flat ferrule.
 const FLAT: f64 = 8.0;
-/// Powers of the root of x⁴ = x + 1, by which a sequence in three dimensions is spread evenly
-/// (Roberts 2018).
+/// Powers of the root of x⁴ = x + 1, for a low-discrepancy sequence in three dimensions (Roberts 2018).
 const EVEN: [f64; 3] = [
     0.819_172_513_396_164_4,
     0.671_043_606_703_789_2,

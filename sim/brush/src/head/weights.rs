@@ -63,12 +63,12 @@ fn hull(points: &[DVec2]) -> Vec<DVec2> {
     lower
 }
 
-/// The weights of a root within the hull of the spines' (eq. 3.17-3.20): of those that put it where
-/// it is, the ones that prefer near spines most.
+/// The weights of a root within the hull of the spines' (eq. 3.17-3.20): of all weights that reproduce its position,
+/// those that favour near spines most.
 #[must_use]
 pub fn weights_of(roots: &[DVec2], root: DVec2) -> Vec<f64> {
-    /// Price of missing the sum or the place, by the squared size of the head; what is missed at it
-    /// is added to what is wanted until nothing is (Hestenes 1969).
+    /// Penalty for an error in the sum or the position, by the squared size of the head; the error is added to the
+    /// target until it vanishes (augmented Lagrangian, Hestenes 1969).
     const PRICE: f64 = 1e3;
     const ROUNDS: usize = 6;
     let m = roots.len();

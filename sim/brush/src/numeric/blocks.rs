@@ -8,15 +8,15 @@ use glam::{DMat2, DVec2};
 #[derive(Clone, Debug, Default)]
 pub struct BlockFactor {
     n: usize,
-    /// D·U: of each row the blocks from the diagonal on count.
+    /// D·U: the blocks of each row from the diagonal rightward are used.
     reduced: Vec<DMat2>,
     /// D⁻¹.
     inverse: Vec<DMat2>,
 }
 
 impl BlockFactor {
-    /// Factors `h` (n×n blocks), of which those on the diagonal and above it count; false where it is
-    /// not positive definite.
+    /// Factors `h` (n×n blocks, of which those on and above the diagonal are read); false where it is not positive
+    /// definite.
     pub fn factor(&mut self, h: &[DMat2], n: usize) -> bool {
         self.n = n;
         self.inverse.clear();

@@ -57,7 +57,7 @@ impl Cholesky {
     }
 }
 
-/// Room for the dual problem.
+/// Buffers of the dual problem.
 #[derive(Clone, Debug, Default)]
 pub struct DualSolver {
     small: Vec<f64>,
@@ -67,16 +67,16 @@ pub struct DualSolver {
 }
 
 impl DualSolver {
-    /// Solves min ½λᵀGλ − rᵀλ, λ ≥ 0, for `g` (m×m, positive semidefinite); `lambda` comes in with
-    /// a guess of which constraints bind and goes out with the solution. `floor` is added to the
-    /// diagonal: where constraints depend on each other the smallest multipliers are taken.
+    /// Solves min ½λᵀGλ − rᵀλ, λ ≥ 0, for `g` (m×m, positive semidefinite). On input `lambda` is a guess of the
+    /// active constraints, on output the solution. `floor` is added to the diagonal, which selects the smallest
+    /// multipliers where constraints are dependent.
     pub fn solve(&mut self, g: &[f64], r: &[f64], floor: f64, lambda: &mut [f64]) {
         let m = r.len();
         self.passive.clear();
         self.passive.extend((0..m).filter(|i| lambda[*i] > 0.0));
         let scale = (0..m).map(|i| g[i * m + i]).fold(0.0, f64::max) + floor;
         let slack = 1e-13 * r.iter().map(|v| v.abs()).fold(0.0, f64::max);
-        // Each pass adds a constraint or removes one; far more passes than either need not happen.
+        // Each pass adds or removes a constraint; more passes than this are not needed.
         for _ in 0..4 * m + 8 {
             self.inner(g, r, floor.max(1e-14 * scale), lambda);
             let steepest = (0..m)
@@ -95,8 +95,8 @@ impl DualSolver {
         }
     }
 
-    /// Solves G·x = r over the constraints `chosen` alone; `x` comes in as r and goes out with the
-    /// solution, 0 elsewhere. False where none is chosen or they depend on each other.
+    /// Solves G·x = r over the constraints `chosen` alone; `x` holds r on input and the solution on output, 0
+    /// elsewhere. False where none is chosen or they are dependent.
     pub fn solve_equalities(
         &mut self,
         g: &[f64],

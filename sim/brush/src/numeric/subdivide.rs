@@ -1,9 +1,9 @@
-//! Catmull-Clark subdivision (Catmull and Clark 1978) as stencils: each vertex of the fine mesh is a
-//! fixed convex sum of the control vertices, so a deformed head is subdivided by one product.
+//! Catmull-Clark subdivision (Catmull and Clark 1978) as stencils: each vertex of the fine mesh is a fixed convex sum
+//! of the control vertices, so a deformed head is subdivided by one product.
 
 use std::collections::BTreeMap;
 
-/// A closed mesh, or one with edges that have a face on one side only.
+/// A mesh, closed or with boundary edges.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Number of vertices.
@@ -12,19 +12,19 @@ pub struct Mesh {
     pub faces: Vec<Vec<usize>>,
 }
 
-/// Shares of control vertices, in order of their numbers.
+/// Weights of control vertices, ordered by vertex number.
 pub type Stencil = Vec<(usize, f64)>;
 
 /// A subdivided mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Subdivided {
-    /// Its faces; after one level all have four corners.
+    /// Faces; after one level all have four corners.
     pub mesh: Mesh,
-    /// One a vertex.
+    /// Stencil of each vertex.
     pub stencils: Vec<Stencil>,
 }
 
-/// Sums of shares.
+/// Weights by vertex number, summed.
 #[derive(Clone, Debug, Default)]
 struct Sum(BTreeMap<usize, f64>);
 
@@ -121,9 +121,9 @@ fn sides(face: &[usize]) -> impl Iterator<Item = (usize, usize)> {
     (0..face.len()).map(|i| (face[i], face[(i + 1) % face.len()]))
 }
 
-/// A vertex after one level: (Q + 2R + (n − 3)·S)/n with Q the mean of the n faces' points, R that of
-/// the edges' middles, S the vertex; on a border (a + 6S + b)/8. `edges` are the vertex's own: their
-/// other end and the faces beside them.
+/// A vertex after one level: (Q + 2R + (n − 3)·S)/n with Q the mean of the n faces' points, R that of the edges'
+/// middles, S the vertex; on a border (a + 6S + b)/8. `edges` are the vertex's own: their other end and the faces
+/// beside them.
 fn moved(
     vertex: usize,
     old: &[Stencil],

@@ -1,11 +1,11 @@
 //! Gaps, energies and their derivatives at a shape.
 //!
-//! Directions are unit vectors: with T_j a basis of the tangent plane at d_j, a small change is
-//! δd_j = T_j·u_j. Gradient and Hessian are in the u_j, the curvature of the sphere included, so that
-//! a Newton step on them converges quadratically.
+//! Directions are unit vectors: with T_j a basis of the tangent plane at d_j, a small change is δd_j = T_j·u_j.
+//! Gradient and Hessian are in the u_j, the curvature of the sphere included, so that a Newton step on them converges
+//! quadratically.
 //!
-//! [`look`](Solver::look) is what every trial of the line search needs, and
-//! [`assemble`](Solver::assemble) what only the next step does.
+//! Every trial of the line search calls [`look`](Solver::look); only the next step calls
+//! [`assemble`](Solver::assemble).
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
@@ -130,8 +130,8 @@ impl Solver {
         }
     }
 
-    /// ‖∇L‖∞, L = E − Σλ_i·gap_i with the multipliers at hand: the longest of the segments' gradients
-    /// in their tangent planes, N·m.
+    /// ‖∇L‖∞ of L = E − Σλ_i·gap_i with the current multipliers: the longest of the segments' gradients in their
+    /// tangent planes, N·m.
     pub(super) fn residual(
         &mut self,
         spine: &Spine,
@@ -156,7 +156,7 @@ impl Solver {
         worst
     }
 
-    /// The quadratic model at the shape last looked at.
+    /// Quadratic model at the shape of the last [`look`](Solver::look).
     pub(super) fn assemble(&mut self, spine: &Spine, shape: &SpineShape) {
         let (model, point) = (&mut self.model, &self.point);
         let n = spine.joints();
@@ -265,7 +265,7 @@ fn outer(a: DVec2, b: DVec2) -> DMat2 {
     DMat2::from_cols(a * b.x, a * b.y)
 }
 
-/// The part of two vectors in a plane, a column each.
+/// The components of two vectors in the tangent plane, one per column.
 fn product(tangents: Tangents, s: DVec3, t: DVec3) -> DMat2 {
     DMat2::from_cols(tangents.of(s), tangents.of(t))
 }
@@ -365,7 +365,7 @@ mod tests {
             *d = (*d + tangents[q / 2].vector(DVec2::AXES[q % 2]) * h).normalize();
             solver.look(problem, &moved, &constraints);
             solver.residual(&spine, &moved, &constraints);
-            // The gradient along tangents that are carried along the way.
+            // The gradient along tangents that are transported along the path.
             let parts = tangents.iter().zip(&shape.directions).enumerate();
             let parts = parts.flat_map(|(j, (tangents, d))| {
                 let turn = maulstick_num::geometry::shortest_arc(*d, moved.directions[j]);

@@ -6,19 +6,19 @@ use super::Settings;
 use crate::energy::friction::{Anisotropy, Friction, friction};
 use crate::spine::{Spine, SpineShape};
 
-/// A sticking contact has broken loose where it slipped by more than this many times the rounding of
-/// friction: its force is then within .5 % of its bound.
-const LOOSE: f64 = 10.0;
-/// A sliding contact sticks where it slipped by less than this many times the rounding.
+/// Slip, in multiples of the rounding of friction, above which a sticking contact breaks loose: its force is then
+/// within .5 % of its bound.
+const SLIP_EPSILONS: f64 = 10.0;
+/// Slip, in multiples of the rounding of friction, below which a sliding contact sticks.
 const STUCK: f64 = 3.0;
 
-/// Friction is reckoned anew where the normal force differs from its own by more than this share.
+/// Relative change of the normal force from which friction is recomputed.
 const LAG: f64 = 2e-3;
 
 /// A half-space that joints stay in: n·x ≥ offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace {
-    /// Unit normal, out of the obstacle.
+    /// Unit normal, pointing out of the obstacle.
     pub normal: DVec3,
     /// Its distance from the origin along the normal, m.
     pub offset_m: f64,
@@ -53,9 +53,9 @@ pub struct ContactConstraint {
     pub force_n: f64,
     /// Point where it touched, or where it began to stick; `None` if it was in the air.
     pub anchor: Option<DVec3>,
-    /// True if it sticks: the coefficient of friction is then the static one.
+    /// True if the contact sticks: the coefficient of friction is then the static one.
     pub sticks: bool,
-    /// d_p of Baxter 2004, eq. 3.14.
+    /// Preferred direction d_p of Baxter 2004, eq. 3.14.
     preferred: DVec3,
 }
 
@@ -87,13 +87,13 @@ impl ContactConstraint {
         self.force_n > 0.0
     }
 
-    /// Puts it into the air.
+    /// Releases the contact.
     pub fn clear(&mut self) {
         *self = Self::new(self.joint, self.half_space);
     }
 
-    /// Notes the preferred direction of its segment: the unit projection onto the half space's plane of the vector from
-    /// the end of the segment to its root.
+    /// Updates the preferred direction of its segment: the unit projection onto the half space's plane of the vector
+    /// from the end of the segment to its root.
     pub fn update_preferred(&mut self, spine: &Spine, shape: &SpineShape) {
         let back = -shape.directions[self.joint];
         let lies = self.half_space.along(back);
@@ -127,12 +127,11 @@ impl ContactConstraint {
         ))
     }
 
-    /// Gives the friction of a joint at `p` the normal force that a solve has found, and frees it where
-    /// it has broken loose; whether that changes anything. Forces below `least_n` count as none.
+    /// Sets the normal force of a joint at `p` to that of a solve, and frees the joint where it has broken loose;
+    /// true if that changes its friction. Forces below `least_n` count as none.
     ///
-    /// A contact that has lifted keeps its anchor until the pose is settled: without friction it may
-    /// touch again.
-    pub(super) fn follow(
+    /// A lifted contact keeps its anchor until the pose is settled, since without friction it may touch again.
+    pub(super) fn update(
         &mut self,
         force_n: f64,
         p: DVec3,
@@ -142,7 +141,7 @@ impl ContactConstraint {
         let Some(anchor) = self.anchor else {
             return false;
         };
-        let loose = self.half_space.along(p - anchor).length() > LOOSE * settings.epsilon_m;
+        let loose = self.half_space.along(p - anchor).length() > SLIP_EPSILONS * settings.epsilon_m;
         let breaks = self.sticks && loose && settings.friction_static > settings.friction;
         self.sticks &= !loose;
         let lags = (force_n - self.force_n).abs() > LAG * force_n.max(least_n);
@@ -150,7 +149,7 @@ impl ContactConstraint {
         breaks || lags
     }
 
-    /// Notes what came of a solve that put the joint to `p`.
+    /// Stores the result of a solve that put the joint to `p`.
     pub(super) fn commit(&mut self, force_n: f64, p: DVec3, settings: &Settings) {
         if force_n <= 0.0 {
             self.clear();

@@ -3,9 +3,9 @@
 use super::{ContactConstraint, Energy, Problem, Solver};
 use crate::spine::SpineShape;
 
-/// A step turns no segment by more than this, rad.
+/// Greatest rotation of a segment in one step, rad.
 const LONGEST_TURN: f64 = 0.7;
-/// Times that a step is halved at most.
+/// Greatest number of times that a step is halved.
 const HALVINGS: usize = 30;
 
 /// Sum of the depths of all joints within their half spaces, m.
@@ -14,8 +14,8 @@ fn sunk(gaps: &[f64]) -> f64 {
 }
 
 impl Solver {
-    /// Goes along the step as far as energy and penetration together fall, and returns the energy there; `None` if they
-    /// do not, with everything as it was.
+    /// Moves along the step while energy and penetration together fall, and returns the energy there; `None` if they
+    /// do not, with everything unchanged.
     pub(super) fn line_search(
         &mut self,
         problem: Problem<'_>,
@@ -42,7 +42,7 @@ impl Solver {
             self.search.way.clear();
             let part = self.step.iter().map(|step| *step * fraction);
             self.search.way.extend(part);
-            self.turn(shape);
+            self.set_shape(shape);
             let tried = self.look(problem, shape, constraints);
             let aim = start + 1e-4 * fraction * slope.min(0.0) + noise;
             if merit(tried, &self.point.gaps) <= aim {
@@ -62,7 +62,7 @@ impl Solver {
     }
 
     /// The shape at the end of a trial step.
-    fn turn(&self, shape: &mut SpineShape) {
+    fn set_shape(&self, shape: &mut SpineShape) {
         let ways = self.search.way.iter().zip(&self.model.tangents);
         let segments = shape.directions.iter_mut().zip(&self.search.from);
         for ((direction, from), (way, tangents)) in segments.zip(ways) {
@@ -70,8 +70,8 @@ impl Solver {
         }
     }
 
-    /// Second-order correction: the half spaces are curved in the directions, so a straight step leaves the binding
-    /// constraints; puts the trial back onto them along their columns. False if no constraint binds.
+    /// Second-order correction. The half spaces are curved in the directions, so a straight step leaves the binding
+    /// constraints; this moves the trial back onto them along their columns. False if no constraint binds.
     fn correct(&mut self, shape: &mut SpineShape) -> bool {
         let program = &mut self.program;
         let (candidates, gaps) = (&self.candidates, &self.point.gaps);
@@ -90,8 +90,8 @@ impl Solver {
         {
             return false;
         }
-        program.follow_columns(&mut self.search.way);
-        self.turn(shape);
+        program.add_columns(&mut self.search.way);
+        self.set_shape(shape);
         true
     }
 }

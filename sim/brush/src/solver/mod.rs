@@ -17,10 +17,10 @@ use crate::energy::spring::OfCosine;
 use crate::qp::DualSolver;
 use crate::spine::{Spine, SpineShape};
 
-/// A joint of another spine that keeps its room.
+/// A joint of another spine that repels this one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Neighbour {
-    /// The joint of this spine that it pushes.
+    /// The joint of this spine that it repels.
     pub joint: usize,
     /// Position, m.
     pub at: DVec3,
@@ -28,12 +28,12 @@ pub struct Neighbour {
     pub at_rest_m: f64,
 }
 
-/// Times that a solve is done again at most for friction to follow the normal forces.
+/// Greatest number of solves until friction agrees with the normal forces.
 const ROUNDS: usize = 16;
-/// A normal force below this share of the stiffest joint's by the length counts as none.
+/// Normal force, as a share of the stiffest joint's by the length, below which a contact is open.
 const LEAST_FORCE: f64 = 1e-5;
 
-/// To the lower right, where the far end of a pen is.
+/// Direction to the lower right, where the far end of a pen is.
 const YIELDS: DVec2 = DVec2::new(
     std::f64::consts::FRAC_1_SQRT_2,
     -std::f64::consts::FRAC_1_SQRT_2,
@@ -54,10 +54,10 @@ pub struct Settings {
     pub repulsion_n_m: f64,
     /// Direction along the surface in which an upright spine gives way, a unit vector.
     pub yields: DVec2,
-    /// Newton steps at most.
+    /// Greatest number of Newton steps.
     pub max_iterations: usize,
-    /// Converged where ‖∇L‖∞ is below this share of the stiffest spring and the penetration below
-    /// this share of the length.
+    /// Tolerance of convergence: of ‖∇L‖∞ as a share of the stiffest spring, and of the penetration as a share of the
+    /// length.
     pub tolerance: f64,
 }
 
@@ -77,7 +77,7 @@ impl Settings {
         }
     }
 
-    /// With this coefficient of friction, sticking or not.
+    /// These settings with one coefficient of friction, sticking and sliding.
     #[must_use]
     pub fn with_friction(mut self, friction: f64) -> Self {
         (self.friction, self.friction_static) = (friction, friction);
@@ -85,23 +85,23 @@ impl Settings {
     }
 }
 
-/// The parts of a spine's energy, J.
+/// Contributions to a spine's energy, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// Of the springs.
+    /// Energy of the springs.
     pub spring: f64,
     /// Work against friction with the half spaces.
     pub friction: f64,
     /// Work against friction in the joints.
     pub damping: f64,
-    /// Of neighbours pushed aside.
+    /// Energy of neighbours pushed aside.
     pub repulsion: f64,
-    /// Of the bonds with the core of the head.
+    /// Energy of the bonds with the core of the head.
     pub bond: f64,
 }
 
 impl Energy {
-    /// All of it.
+    /// Sum of all contributions.
     #[must_use]
     pub fn total(self) -> f64 {
         self.spring + self.friction + self.damping + self.repulsion + self.bond
@@ -119,18 +119,18 @@ pub struct Solution {
     pub residual: f64,
     /// Deepest joint within a half space, m.
     pub penetration_m: f64,
-    /// The energy.
+    /// Contributions to the energy.
     pub energy: Energy,
 }
 
 impl Solution {
-    /// This solution with the Newton steps of the attempt before it.
+    /// This solution, with the Newton steps of an earlier attempt added.
     fn after(mut self, attempt: &Self) -> Self {
         self.iterations += attempt.iterations;
         self
     }
 
-    /// True if the shape may be used: converged, or so nearly that nobody could see the difference.
+    /// True if the shape is usable: converged, or with an error that nobody could see.
     fn usable(&self, spine: &Spine) -> bool {
         self.converged
             || (self.residual <= 1e-4 * spine.stiffest()
@@ -138,13 +138,13 @@ impl Solution {
     }
 }
 
-/// Solves spine after spine in the same room.
+/// Solver of spines, with reused buffers.
 #[derive(Clone, Debug, Default)]
 pub struct Solver {
     before: Vec<DVec3>,
-    /// The chord of each joint when the step began.
+    /// Chord of each joint at the beginning of the step.
     chords: Vec<DVec3>,
-    /// Rest direction of each segment if the one before goes along the base; empty if that is straight.
+    /// Rest direction of each segment if the one before points along the base; empty if that is straight.
     rest: Vec<DVec3>,
     damped: bool,
     last_constraints: Vec<ContactConstraint>,
@@ -167,11 +167,11 @@ struct Point {
     ends: Vec<DVec3>,
     bends: Vec<OfCosine>,
     dampers: Vec<Damping>,
-    /// Force and stiffness of what acts on each segment's end.
+    /// Force and stiffness of the loads on each segment's end.
     pulls: Vec<(DVec3, DMat3)>,
     /// Derivative of the energy by each direction, in space.
     slopes: Vec<DVec3>,
-    /// The same of the Lagrangian.
+    /// Derivative of the Lagrangian by each direction, in space.
     lagrangian: Vec<DVec3>,
     /// Gap of each constraint, m; negative where its joint penetrates.
     gaps: Vec<f64>,
@@ -198,29 +198,29 @@ impl Tangents {
 struct Model {
     tangents: Vec<Tangents>,
     gradient: Vec<DVec2>,
-    /// A block for each pair of segments, row after row; those on the diagonal and above it count.
+    /// Blocks of the Hessian by pair of segments, row by row; those on and above the diagonal are used.
     hessian: Vec<DMat2>,
 }
 
-/// A constraint that binds, or would be broken by the step without it.
+/// A constraint that binds, or would be violated by the step without it.
 #[derive(Clone, Copy, Debug)]
 struct ActiveCandidate {
     constraint: usize,
-    /// Stiffness of the spring that stands for it where the model is not convex.
+    /// Stiffness of the spring that replaces it where the model is not convex.
     spring: f64,
 }
 
-/// The quadratic program of a step; its constraints are those that are [`ActiveCandidate`].
+/// The quadratic program of a step, over the [`ActiveCandidate`]s.
 #[derive(Clone, Debug, Default)]
 struct QuadraticProgram {
     factor: BlockFactor,
-    /// The model with springs.
+    /// The Hessian with the springs added.
     stiff: Vec<DMat2>,
     /// The unconstrained step.
     newton: Vec<DVec2>,
-    /// By how much the step moves the ends, m.
+    /// Displacement of the ends by the step, m.
     moves: Vec<DVec3>,
-    /// Derivative of each gap: a row a constraint.
+    /// Derivatives of the gaps, a row a constraint.
     rows: Vec<DVec2>,
     /// H⁻¹ times each row.
     columns: Vec<DVec2>,
@@ -230,12 +230,12 @@ struct QuadraticProgram {
     active_set: DualSolver,
 }
 
-/// Room of the line search.
+/// Buffers of the line search.
 #[derive(Clone, Debug, Default)]
 struct Search {
-    /// The directions that it starts from.
+    /// Directions at the beginning of the search.
     from: Vec<DVec3>,
-    /// The part of the step that is tried.
+    /// Trial part of the step.
     way: Vec<DVec2>,
 }
 
@@ -244,7 +244,7 @@ struct Search {
 struct Problem<'a> {
     spine: &'a Spine,
     neighbours: &'a [Neighbour],
-    /// One a segment, or none.
+    /// Bonds, one a segment, or empty.
     bonds: &'a [Bond],
     settings: &'a Settings,
 }
@@ -253,11 +253,11 @@ impl Solver {
     /// Bends `shape` to the least energy outside the half spaces of all `stops`, starting from its present bend, and
     /// writes the normal forces into them.
     ///
-    /// Friction has the normal force of the previous solve, and the solve is repeated with the one that it found until
-    /// the two agree: a contact that lifts has no friction after all, and one that breaks loose has that of sliding. A
-    /// new contact has no friction in this pose: it has not slipped yet. Where a leap of the handle leaves the head so
-    /// twisted that no minimum is found from there, it is sought from the relaxed head, without friction; where that
-    /// fails too, the head keeps its shape.
+    /// Friction uses the normal force of the previous solve, and the solve is repeated until the two agree: a contact
+    /// that lifts has no friction, and one that breaks loose has sliding friction. A new contact has no friction in
+    /// this pose, because it has not slipped yet. A leap of the handle may twist the head so much that no minimum is
+    /// found from there: it is then sought from the relaxed head, without friction; where that fails too, the head
+    /// keeps its shape.
     pub fn solve(
         &mut self,
         spine: &Spine,
@@ -269,8 +269,7 @@ impl Solver {
         self.solve_bound(spine, shape, constraints, (neighbours, &[]), settings)
     }
 
-    /// As [`solve`](Self::solve), with what binds the segments to the core of the head: one a segment,
-    /// or none.
+    /// [`solve`](Self::solve) with bonds of the segments to the core of the head: one a segment, or none.
     pub fn solve_bound(
         &mut self,
         spine: &Spine,
@@ -335,7 +334,7 @@ impl Solver {
         kept.after(attempt)
     }
 
-    /// Seeks the minimum from how the spine is bent, and if need be from the relaxed spine.
+    /// Seeks the minimum from the current bend, and if necessary from the relaxed spine.
     fn attempt(
         &mut self,
         problem: Problem<'_>,
@@ -352,7 +351,7 @@ impl Solver {
         break_symmetry(spine, shape, settings.yields);
         let mut solution = self.minimise(problem, shape, constraints);
         for _ in 0..ROUNDS {
-            if !solution.usable(spine) || !self.follow_forces(problem, constraints) {
+            if !solution.usable(spine) || !self.update_forces(problem, constraints) {
                 break;
             }
             solution = self.minimise(problem, shape, constraints).after(&solution);
@@ -368,14 +367,14 @@ impl Solver {
         solution
     }
 
-    /// The stops as the newest [`solve`](Self::solve) saw them in the end: with the normal forces and
-    /// anchors that its friction was reckoned with.
+    /// The constraints at the end of the newest [`solve`](Self::solve), with the normal forces and anchors of its
+    /// friction.
     #[must_use]
     pub fn last_constraints(&self) -> &[ContactConstraint] {
         &self.last_constraints
     }
 
-    /// The energy of a shape in the step that [`begin`](Self::begin) began, with the friction of
+    /// Energy of a shape in the step that [`begin`](Self::begin) started, with the friction of
     /// `stops`, and its derivative by each direction, in space.
     pub fn energy(
         &mut self,
@@ -395,7 +394,7 @@ impl Solver {
         (energy, &self.point.slopes)
     }
 
-    /// Notes from which shape the energy of damping counts, and how the spine rests.
+    /// Stores the initial shape for the energy of damping, and the rest shape of the spine.
     pub fn begin(&mut self, spine: &Spine, shape: &SpineShape) {
         let mut above = shape.base();
         self.chords.clear();
@@ -440,7 +439,7 @@ impl Solver {
         solution
     }
 
-    /// Checks the conditions of a minimum with the multipliers at hand.
+    /// Checks the conditions of a minimum with the current multipliers.
     fn measure(
         &mut self,
         problem: Problem<'_>,
@@ -459,20 +458,20 @@ impl Solver {
             && off <= tolerance * spine.length_m();
     }
 
-    /// Gives friction the normal forces at hand; whether it differs from what it was.
-    fn follow_forces(&self, problem: Problem<'_>, constraints: &mut [ContactConstraint]) -> bool {
+    /// Updates the normal forces of friction; true if they changed.
+    fn update_forces(&self, problem: Problem<'_>, constraints: &mut [ContactConstraint]) -> bool {
         let (spine, settings) = (problem.spine, problem.settings);
         let least_n = LEAST_FORCE * spine.stiffest() / spine.length_m();
         let mut any = false;
         for (i, constraint) in constraints.iter_mut().enumerate() {
             let at = self.point.ends[constraint.joint];
-            any |= constraint.follow(self.multipliers[i], at, least_n, settings);
+            any |= constraint.update(self.multipliers[i], at, least_n, settings);
         }
         any
     }
 }
 
-/// True if every joint could leave its half space at all.
+/// True if every joint can leave its half space.
 fn is_within_reach(spine: &Spine, shape: &SpineShape, constraints: &[ContactConstraint]) -> bool {
     constraints.iter().all(|constraint| {
         let root = constraint.half_space.gap(shape.root);
@@ -481,8 +480,8 @@ fn is_within_reach(spine: &Spine, shape: &SpineShape, constraints: &[ContactCons
     })
 }
 
-/// A straight spine pressed along its own axis has no preferred direction of bending, and no gradient: turns it a
-/// little.
+/// Turns a straight spine pressed along its own axis a little: it has no preferred direction of bending, and no
+/// gradient.
 fn break_symmetry(spine: &Spine, shape: &mut SpineShape, yields: DVec2) {
     let upright = spine.rest.is_empty()
         && shape

@@ -1,7 +1,7 @@
 //! The Newton step: a quadratic model made convex, and its multipliers.
 //!
-//! Of many constraints few bind. Only those that pushed before or would be broken by the step are in
-//! the quadratic program; where its solution breaks others they join in, and it is solved again.
+//! Few of many constraints bind. The quadratic program has only those that pushed before or would be violated by the
+//! step; where its solution violates others they are added, and it is solved again.
 
 use glam::{DMat2, DVec2, DVec3};
 
@@ -9,10 +9,10 @@ use super::{ActiveCandidate, ContactConstraint, QuadraticProgram, Solver};
 use crate::blocks::dot;
 use crate::spine::Spine;
 
-/// Stiffness of the springs that stand for constraints where the model is not convex, by that of the
-/// stiffest joint over the square of the length.
+/// Stiffness of the springs that replace constraints where the model is not convex, by that of the stiffest joint
+/// over the square of the length.
 const CONSTRAINT_STIFFNESS: f64 = 100.0;
-/// Depth of a joint in a half space that a step may leave without its constraint, by the length.
+/// Depth of a joint in a half space, by the length, that a step may leave without its constraint.
 const SLACK: f64 = 1e-12;
 
 impl Solver {
@@ -62,7 +62,7 @@ impl Solver {
         }
     }
 
-    /// Takes a constraint into the program.
+    /// Adds a constraint to the program.
     fn approach(
         &mut self,
         spine: &Spine,
@@ -82,7 +82,7 @@ impl Solver {
         self.program.rows.extend(row);
     }
 
-    /// The force with which a constraint pushes after the step: its multiplier and its spring.
+    /// Force of a constraint after the step: its multiplier and its spring.
     fn push(&self, i: usize) -> f64 {
         let candidate = self.candidates[i];
         if candidate.spring == 0.0 {
@@ -144,14 +144,14 @@ impl Solver {
                 .map(|candidate| gaps[candidate.constraint]);
             self.program.solve(gaps);
             self.step.clone_from(&self.program.newton);
-            self.program.follow_columns(&mut self.step);
+            self.program.add_columns(&mut self.step);
             if !self.meet(spine, constraints) {
                 break;
             }
         }
     }
 
-    /// Takes the constraints that the step would break into the program; whether there were any.
+    /// Adds the constraints that the step would violate to the program; true if there were any.
     fn meet(&mut self, spine: &Spine, constraints: &[ContactConstraint]) -> bool {
         self.program.moves.clear();
         let mut moved = DVec3::ZERO;
@@ -218,8 +218,8 @@ impl QuadraticProgram {
         1e-12 * (0..n).map(|i| self.dual[i * n + i]).fold(0.0, f64::max)
     }
 
-    /// Goes on by the multipliers times the columns.
-    pub(super) fn follow_columns(&self, way: &mut [DVec2]) {
+    /// Adds the columns, weighted by the multipliers, to a step.
+    pub(super) fn add_columns(&self, way: &mut [DVec2]) {
         let columns = self.columns.chunks_exact(way.len());
         for (value, column) in self.lambda.iter().zip(columns) {
             if *value != 0.0 {

@@ -1,8 +1,8 @@
 //! The core of a head: one spine for the mean of all, which bends as the head does as a whole.
 //!
-//! Spines that are solved one after the other and only push each other aside would each give way to
-//! its own side where an upright head is pressed down. The core gives way to one side, and bonds hold
-//! the segments of the others to where it would carry them.
+//! Spines that are solved in turn and only repel each other would each give way to a different side where an upright
+//! head is pressed down. The core gives way to one side, and bonds hold the segments of the others to where it would
+//! carry them.
 
 use glam::{DQuat, DVec3};
 use maulstick_num::geometry::{Rigid, shortest_arc};
@@ -16,13 +16,13 @@ use crate::spine_root::SpineRoot;
 pub struct Core {
     /// Root and material of the core.
     pub root: SpineRoot,
-    /// For each spine and segment: the core's segment beside it, and its own direction at rest in
-    /// that segment's frame.
+    /// For each spine and segment: the core's segment beside it, and its own direction at rest in that segment's
+    /// frame.
     beside: Vec<Vec<(usize, DVec3)>>,
 }
 
 impl Core {
-    /// The mean of some spines.
+    /// The mean of spines.
     #[must_use]
     pub fn of(roots: &[SpineRoot]) -> Self {
         let joints = roots.iter().map(|root| root.spine.joints()).max();
@@ -50,7 +50,7 @@ impl Core {
             })
             .collect();
         let along = |of: &dyn Fn(&Spine, usize) -> f64| -> Vec<f64> {
-            // A joint of a spine with fewer stands for several of the core's, one behind the other.
+            // A joint of a shorter spine stands for several successive ones of the core.
             let share = |root: &SpineRoot, k: usize| {
                 let m = root.spine.joints();
                 of(&root.spine, k * m / n) * n as f64 / m as f64
@@ -84,8 +84,8 @@ impl Core {
         }
     }
 
-    /// The bonds of spine `number` to a bent core, whose frames are [`frames`], as much stiffer than the
-    /// joints of the spine as `share` says.
+    /// The bonds of spine `number` to a bent core, whose frames are [`frames`]; `share` is their stiffness as a
+    /// multiple of the spine's joints'.
     pub fn bonds(
         &self,
         number: usize,

@@ -1,6 +1,6 @@
-//! One spine tried out by itself: a spine file, a list of poses, and what the solver makes of them.
+//! A single spine without a head: a spine file, a list of poses, and the solver's results.
 //!
-//! Pure: texts come in, rows go out. `maulstick brush solve` is the command around it.
+//! Texts come in, rows go out; `maulstick brush solve` is the command around it.
 //!
 //! ```toml
 //! lengths_m = [0.01, 0.008, 0.007]              # of the segments, from the ferrule to the point
@@ -33,9 +33,9 @@ pub use super::pose_error::{PoseError, PoseFault};
     expecting = "damping_nm is a number for all joints, or a list with one for each"
 )]
 pub enum Each {
-    /// The same for all.
+    /// The number of all joints.
     All(f64),
-    /// One for each.
+    /// A number for each joint.
     List(Vec<f64>),
 }
 
@@ -59,7 +59,8 @@ pub struct SpineFile {
     /// C_η (Baxter 2004, eq. 3.14): the share of friction that a pulled bristle lacks.
     #[serde(default)]
     pub c_eta: f64,
-    /// k of the same equation: how sharply that is focused on the way the bristle is pulled.
+    /// k of the same equation: how sharply the missing friction is focused on the direction in which the bristle is
+    /// pulled.
     #[serde(default = "two")]
     pub k: f64,
 }
@@ -76,7 +77,7 @@ fn two() -> f64 {
     2.0
 }
 
-/// Lengths, stiffness and the like must be of a size that floating point can square.
+/// Least value of lengths and stiffness, so that floating point can square them.
 const SMALLEST_VALUE: f64 = 1e-12;
 
 impl SpineFile {
@@ -190,17 +191,17 @@ fn one_each(field: &str, number: usize, joints: usize) -> Result<(), BrushError>
 /// Pose of the ferrule at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrialPose {
-    /// s.
+    /// Time, s.
     pub t: f64,
-    /// Brush frame to surface frame: the spine begins at the origin of the one, unbent along its −z,
-    /// above the plane z = 0 of the other.
+    /// Brush frame to surface frame: the spine begins at the origin of the brush frame and rests along its −z, above
+    /// the plane z = 0 of the surface frame.
     pub brush: Rigid,
 }
 
 /// The headings of a list of poses.
 pub const HEADER: &str = "t,x,y,z,qx,qy,qz,qw";
 const COLUMNS: [&str; 8] = ["t", "x", "y", "z", "qx", "qy", "qz", "qw"];
-/// A quaternion whose length differs from 1 by more is taken for a mistake.
+/// Tolerance of a quaternion's length about 1; beyond it the quaternion is rejected.
 const NEARLY_UNIT: f64 = 1e-3;
 
 /// Reads a list of poses: a table whose first line names the columns of [`HEADER`] in any order, then a line a pose, time
@@ -267,7 +268,7 @@ fn pose(row: Row<'_>, places: &[usize; COLUMNS.len()]) -> Result<TrialPose, Pose
     })
 }
 
-/// The spine at a pose.
+/// Solved spine at a pose.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrialRow {
     /// Time of the pose, s.
@@ -278,28 +279,28 @@ pub struct TrialRow {
     pub theta: Vec<f64>,
     /// φ of each joint, rad.
     pub phi: Vec<f64>,
-    /// The energy.
+    /// Contributions to the energy, J.
     pub energy: TrialEnergy,
     /// Deepest joint below the surface, m.
     pub penetration_m: f64,
     /// ‖∇L‖∞ by the stiffness of the stiffest joint.
     pub residual: f64,
-    /// Newton steps.
+    /// Number of Newton steps.
     pub iterations: usize,
     /// True if the solver reached its tolerance; if not, the spine kept its shape.
     pub converged: bool,
 }
 
-/// The parts of the energy, J.
+/// Contributions to the energy, J.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TrialEnergy {
-    /// Of the springs.
+    /// Energy of the springs.
     pub spring: f64,
     /// Work against friction with the surface.
     pub friction: f64,
     /// Work against friction in the joints.
     pub damping: f64,
-    /// All of it.
+    /// Sum of all contributions.
     pub total: f64,
 }
 
@@ -314,8 +315,8 @@ impl From<Energy> for TrialEnergy {
     }
 }
 
-/// Bends a spine through the poses: it comes to the first straight and without friction, and to each
-/// other one as it was bent at the one before.
+/// Bends a spine through the poses: it starts straight and without friction at the first, and at each other one with
+/// the bend of the one before.
 #[must_use]
 pub fn follow(file: &SpineFile, poses: &[TrialPose]) -> Vec<TrialRow> {
     let (spine, settings) = (file.spine(), file.settings());

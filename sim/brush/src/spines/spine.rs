@@ -42,7 +42,7 @@ impl Spine {
         }
     }
 
-    /// With this shape at rest: the direction of each segment in the spine's frame.
+    /// This spine with a shape at rest: the direction of each segment in the spine's frame.
     #[must_use]
     pub fn resting(mut self, directions: &[DVec3]) -> Self {
         self.rest.clear();
@@ -55,38 +55,38 @@ impl Spine {
         self
     }
 
-    /// With inner friction: `share` of the torque that the spring of a joint has at 1 rad.
+    /// This spine with inner friction: `share` of the torque that the spring of a joint has at 1 rad.
     #[must_use]
     pub fn damped(mut self, share: f64) -> Self {
         self.damping = self.stiffness.iter().map(|k| share * k).collect();
         self
     }
 
-    /// Number of joints, which is the number of segments.
+    /// Number of joints, equal to that of segments.
     #[must_use]
     pub fn joints(&self) -> usize {
         self.lengths_m.len()
     }
 
-    /// Its whole length, m.
+    /// Length of the whole spine, m.
     #[must_use]
     pub fn length_m(&self) -> f64 {
         self.lengths_m.iter().sum()
     }
 
-    /// Its stiffest joint, N·m/rad.
+    /// Stiffness of the stiffest joint, N·m/rad.
     #[must_use]
     pub fn stiffest(&self) -> f64 {
         self.stiffness.iter().copied().fold(0.0, f64::max)
     }
 }
 
-/// A spine in space.
+/// Shape of a spine in space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpineShape {
-    /// Root point.
+    /// Position of the root.
     pub root: DVec3,
-    /// Its frame: unbent it would go along −z.
+    /// Orientation of the base frame: an unbent spine points along its −z.
     pub frame: DQuat,
     /// Unit direction of each segment.
     pub directions: Vec<DVec3>,
@@ -114,7 +114,7 @@ impl SpineShape {
         shape
     }
 
-    /// Lets all joints go.
+    /// Unbends all joints.
     pub fn relax(&mut self, spine: &Spine) {
         let base = self.base();
         let mut before = base;
@@ -127,13 +127,13 @@ impl SpineShape {
         }
     }
 
-    /// Unit direction in which it would go if it were straight.
+    /// Unit direction of the unbent spine.
     #[must_use]
     pub fn base(&self) -> DVec3 {
         self.frame * DVec3::NEG_Z
     }
 
-    /// The end of segment `i`: the root plus all segments up to it.
+    /// End of segment `i`: the root plus all segments up to it.
     #[must_use]
     pub fn joint(&self, spine: &Spine, i: usize) -> DVec3 {
         let ends = self.directions.iter().zip(&spine.lengths_m).take(i + 1);
@@ -150,13 +150,13 @@ impl SpineShape {
         }
     }
 
-    /// The tip.
+    /// Position of the tip.
     #[must_use]
     pub fn tip(&self, spine: &Spine) -> DVec3 {
         self.joint(spine, spine.joints() - 1)
     }
 
-    /// Moves rigidly, without bending, to another root and frame.
+    /// Moves the shape rigidly to another root and frame.
     pub fn carry(&mut self, root: DVec3, frame: DQuat) {
         let turn = frame * self.frame.conjugate();
         (self.root, self.frame) = (root, frame);
@@ -165,7 +165,7 @@ impl SpineShape {
             .for_each(|d| *d = (turn * *d).normalize());
     }
 
-    /// θ and φ of each joint.
+    /// θ and φ of each joint, rad, in single precision.
     pub fn angles(&self, into: &mut Vec<[f32; 2]>) {
         into.extend(self.exact_angles().map(|angles| angles.map(|v| v as f32)));
     }

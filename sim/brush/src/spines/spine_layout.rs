@@ -1,4 +1,4 @@
-//! The tuft: positions of the spines of a head in the ferrule.
+//! The tuft: positions of a head's spines in the ferrule.
 
 use glam::{DVec2, DVec3};
 use maulstick_num::geometry::{Rigid, shortest_arc};
@@ -17,26 +17,25 @@ const LEAST_HEIGHT: f64 = 0.05;
 /// The spines of a head.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpineLayout {
-    /// Ring: the one in the middle first, then those around it, counterclockwise seen from the
-    /// handle. Row: along x.
+    /// Spines with their roots. Ring: the one in the middle first, then those around it, counterclockwise seen from
+    /// the handle. Row: along x.
     pub roots: Vec<SpineRoot>,
-    /// For each spine the joints of the others that keep it out of their room: number of the other
-    /// spine, joint, and the distance at rest, m.
+    /// For each spine, the joints of other spines that repel it.
     pub rooms: Vec<Vec<Room>>,
-    /// Stiffness of that room, N/m.
+    /// Stiffness of the repulsion, N/m.
     pub repulsion_n_m: f64,
     /// Core to which the spines are bound.
     pub core: Core,
-    /// Stiffness of their bonds by that of their joints.
+    /// Stiffness of the bonds as a multiple of that of the joints.
     pub bond: f64,
 }
 
-/// Room that a joint of one spine keeps from the same joint of another.
+/// Spacing of a joint from the same joint of another spine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Room {
     /// The other spine.
     pub other: usize,
-    /// The joint of both.
+    /// The joint, of both spines.
     pub joint: usize,
     /// Distance at rest, m.
     pub at_rest_m: f64,
@@ -105,7 +104,7 @@ impl SpineLayout {
         roots.fold(brush.translation.z, f64::min)
     }
 
-    /// Holds the ferrule of a head of `length_m` so high that no spine begins below the surface z = 0.
+    /// Raises the ferrule of a head of `length_m` until no spine begins below the surface z = 0.
     pub fn raise(&self, brush: &mut Rigid, length_m: f64) {
         let lacking = LEAST_HEIGHT * length_m - self.lowest_root(brush);
         brush.translation.z += lacking.max(0.0);

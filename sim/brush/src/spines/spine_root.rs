@@ -5,19 +5,19 @@ use maulstick_num::geometry::{Rigid, shortest_arc};
 
 use crate::spine::{Spine, SpineShape};
 
-/// A spine and where it begins.
+/// A spine and its root.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpineRoot {
     /// Origin in the ferrule, brush frame, m.
     pub origin: DVec3,
-    /// Turns the brush frame so that its −z is the spine's direction where it leaves the ferrule.
+    /// Rotation of the brush frame that takes its −z to the spine's direction at the ferrule.
     pub lean: DQuat,
     /// The spine, with its share of the head's stiffness.
     pub spine: Spine,
 }
 
 impl SpineRoot {
-    /// A spine that rests as drawn: from `root` on by segments, brush frame, m.
+    /// A spine with a drawn shape at rest: from `root` on by segments, brush frame, m.
     #[must_use]
     pub fn drawn(root: DVec3, segments: &[DVec3], spine: Spine) -> Self {
         let lean = shortest_arc(DVec3::NEG_Z, segments[0].normalize());

@@ -1,4 +1,4 @@
-//! Surfaces on the desk, and the ferrule's pose by a stylus.
+//! Surfaces on the desk, and the ferrule's pose from a stylus sample.
 
 use glam::{DVec2, DVec3};
 use maulstick_num::geometry::{Rigid, rotation, shortest_arc};
@@ -9,13 +9,13 @@ use maulstick_types::stylus::{StylusPose, StylusSample};
 use crate::palette_place::{corner_radii, is_on};
 use crate::solver::HalfSpace;
 
-/// A pen without pressure holds the point of the head this far above the surface, m.
+/// Height of the head's point above the surface under a pen without pressure, m.
 pub const HOVER_M: f64 = 5e-3;
 
-/// Surfaces whose heights differ by less than this are even, m.
+/// Difference of heights below which surfaces are level, m.
 const EVEN_M: f64 = 1e-6;
 
-/// A surface as the brush sees it.
+/// Geometry of a surface for the brush.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     /// Number of the surface.
@@ -28,7 +28,7 @@ pub struct Plane {
     pub size_m: [f64; 2],
     /// Side of a cell in the surface's own lengths, m.
     pub cell_m: f64,
-    /// Radii of its corners in its own lengths, m, as [`corner_radii`] has them.
+    /// Radii of its corners in its own lengths, m, in the order of [`corner_radii`].
     pub radii_m: [f64; 4],
 }
 
@@ -44,7 +44,7 @@ impl Plane {
         }
     }
 
-    /// Its normal toward the painter, desk frame.
+    /// Normal toward the painter, desk frame.
     #[must_use]
     pub fn normal(&self) -> DVec3 {
         self.to_desk.vector(DVec3::Z)
@@ -68,15 +68,15 @@ impl Plane {
     }
 }
 
-/// Obstacle to a brush, as seen from a surface: convex, so that a joint is outside of at least one of its faces.
-/// Lengths are the desk's, axes those of the surface.
+/// Obstacle to a brush, relative to a surface: convex, so that a joint is outside at least one of its faces. Lengths
+/// are the desk's, axes those of the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle {
     faces: Vec<HalfSpace>,
 }
 
 impl Obstacle {
-    /// The surface z = 0, which continues beside its edge.
+    /// The half space below z = 0, which continues beyond the surface's edge.
     #[must_use]
     pub fn ground() -> Self {
         Self {
@@ -84,7 +84,7 @@ impl Obstacle {
         }
     }
 
-    /// The face that a point is most outside of, or least within.
+    /// The face that a point is farthest outside of, or least within.
     #[must_use]
     pub fn face_toward(&self, p: DVec3) -> HalfSpace {
         let mut best = self.faces[0];
@@ -96,12 +96,12 @@ impl Obstacle {
         best
     }
 
-    /// True if a ball reaches it.
+    /// True if a ball overlaps it.
     fn is_near(&self, p: DVec3, radius: f64) -> bool {
         self.face_toward(p).gap(p) < radius
     }
 
-    /// A plane as seen from another: the canvas is the half space under it, a palette a board.
+    /// A plane relative to another: the canvas is the half space under it, a palette a board.
     fn of(plane: &Plane, seen_from: &Plane) -> Self {
         let place = seen_from.to_desk.inverse().after(&plane.to_desk);
         let face = |normal: DVec3, through: DVec3| {
@@ -139,9 +139,9 @@ impl Desk {
     }
 
     /// Obstacles to a brush with a head of `head_m` and its ferrule at `ferrule`, in the frame of `surface`: that
-    /// first, then the others that it might reach.
+    /// surface first, then the others within reach.
     ///
-    /// Surfaces in one plane are one: none has an edge there.
+    /// Surfaces in one plane are merged, without an edge between them.
     #[must_use]
     pub fn obstacles(&self, surface: &Plane, ferrule: DVec3, head_m: f64) -> Vec<Obstacle> {
         let same = |plane: &&Plane| {
@@ -173,7 +173,7 @@ impl Desk {
         self.planes.iter().find(|plane| plane.id == id)
     }
 
-    /// The surfaces that stop what comes down at a point: those that hold it, and the canvas, whose plane continues.
+    /// Surfaces that stop a descending point: those below it, and the canvas, whose plane continues.
     pub fn below(&self, in_desk: DVec3) -> impl Iterator<Item = &Plane> {
         let planes = self.planes.iter();
         planes.filter(move |plane| plane.id == CANVAS || plane.holds(in_desk))
@@ -189,7 +189,7 @@ impl Desk {
     }
 }
 
-/// The orientation of a pen: its axis by two tilts, turned about itself.
+/// Orientation of a pen: its axis by two tilts, and its rotation about that axis.
 #[must_use]
 pub fn pen_orientation(tilt_rad: [f64; 2], twist_rad: f64) -> glam::DQuat {
     let tangent = |angle: f64| {
@@ -200,7 +200,7 @@ pub fn pen_orientation(tilt_rad: [f64; 2], twist_rad: f64) -> glam::DQuat {
     shortest_arc(DVec3::Z, axis) * rotation(DVec3::Z, twist_rad)
 }
 
-/// Point by which the surface is chosen: the ferrule of a 6-DOF device, the contact point of a pen.
+/// Point that selects the surface: the ferrule of a 6-DOF device, the contact point of a pen.
 #[must_use]
 pub fn aim(sample: &StylusSample, head_length_m: f64) -> DVec3 {
     match &sample.pose {
@@ -212,8 +212,8 @@ pub fn aim(sample: &StylusSample, head_length_m: f64) -> DVec3 {
 }
 
 /// Brush frame to desk frame for a sample. For a pen the ferrule is at contact point + axis · head length · (1 −
-/// depth_share · pressure), and [`HOVER_M`] higher without pressure; the contact point is taken on `surface` (desk
-/// frame), for a pen knows of no other height than its tablet's.
+/// depth_share · pressure), and [`HOVER_M`] higher without pressure. The contact point is projected onto `surface`
+/// (desk frame), because the tablet gives no height.
 #[must_use]
 pub fn ferrule(
     sample: &StylusSample,

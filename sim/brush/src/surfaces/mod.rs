@@ -1,4 +1,4 @@
-//! Surfaces on the desk, and where a stylus holds the ferrule over them.
+//! Surfaces on the desk, and the ferrule of a stylus over them.
 
 pub mod desk;
 pub mod palette_place;

@@ -12,18 +12,18 @@ pub const GAP_M: f64 = 0.01;
 /// Height of the palette's face above the canvas that it is slid over, m: its board is 4 mm thick, and there is paint
 /// under it.
 const OVER_M: f64 = 0.01;
-/// Poses that differ by less are the same, m and parts of a quaternion.
-const SAME: f64 = 1e-9;
+/// Tolerance of equal poses, m and components of a quaternion.
+const POSE_TOLERANCE: f64 = 1e-9;
 /// Radius of the board's corners on the side of the wells, and on the other, shares of its width.
 const ROUNDED: [f64; 2] = [0.14, 0.48];
 
 /// The side of the canvas on which the palette rests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
-    /// Of a painter whose brush is in the right hand.
+    /// The left, for a brush in the right hand.
     #[default]
     Left,
-    /// Of one whose brush is in the left hand.
+    /// The right, for a brush in the left hand.
     Right,
 }
 
@@ -66,7 +66,7 @@ pub fn over(canvas: &Surface, palette: &Surface) -> Pose {
 /// True if two poses differ by rounding alone.
 #[must_use]
 pub fn is_same(a: &Pose, b: &Pose) -> bool {
-    let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME);
+    let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < POSE_TOLERANCE);
     near(&a.position_m, &b.position_m) && near(&a.orientation, &b.orientation)
 }
 
@@ -97,7 +97,7 @@ fn is_paint(well: &Well) -> bool {
     matches!(well.kind, WellKind::Paint { .. })
 }
 
-/// True if a point of a surface, in its own lengths, is on it and not beyond a rounded corner.
+/// True if a point, in the surface's own lengths, is on it and within its rounded corners.
 #[must_use]
 pub fn is_on(size: DVec2, radii: [f64; 4], at: DVec2) -> bool {
     if at.cmplt(DVec2::ZERO).any() || at.cmpge(size).any() {

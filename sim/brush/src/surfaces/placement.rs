@@ -10,15 +10,14 @@ use serde_json::json;
 
 /// Zooms that a painter can use.
 pub const ZOOMS: [f64; 2] = [0.1, 20.0];
-/// Farthest distance of the canvas from the middle of the desk, m, before its zoom.
+/// Greatest distance of the canvas from the middle of the desk, m, before its zoom.
 pub const FARTHEST_M: f64 = 1.0;
-/// A surface is tilted by this much at most, rad.
+/// Greatest tilt of a surface, rad.
 pub const TILT_MOST: f64 = 1.05;
 
-/// The edit that gives a surface this pose and zoom.
+/// The edit that sets a surface's pose and zoom.
 ///
-/// # Errors
-/// [`ValueError`] where they are not finite, or out of reach.
+/// # Errors [`ValueError`] where they are not finite or out of range.
 pub fn place(surface: u32, pose: &Pose, zoom: f64) -> Result<Edit, ValueError> {
     check_reach(pose)?;
     let zoom = Zoom::new(zoom)?;
@@ -45,7 +44,7 @@ impl From<&Surface> for SurfacePlacement {
 }
 
 impl SurfacePlacement {
-    /// Moved along the desk, within reach.
+    /// This placement moved along the desk, within its bounds.
     #[must_use]
     pub fn moved(&self, by: DVec3) -> Self {
         let bound = DVec3::splat(FARTHEST_M * self.zoom.max(1.0));
@@ -58,16 +57,15 @@ impl SurfacePlacement {
         }
     }
 
-    /// The edit that lays a surface so.
+    /// The edit that gives a surface this placement.
     ///
-    /// # Errors
-    /// [`ValueError`] where it is not finite, or out of reach.
+    /// # Errors [`ValueError`] where it is not finite or out of range.
     pub fn edit(&self, surface: u32) -> Result<Edit, ValueError> {
         place(surface, &self.pose.to_pose(), self.zoom)
     }
 
-    /// Larger by a factor about a point of the desk. A zoom set otherwise, beyond those of a painter, goes no farther;
-    /// it does not leap to the bound.
+    /// This placement enlarged by a factor about a point of the desk. A zoom beyond a painter's bounds grows no
+    /// further; it does not snap to the bound.
     #[must_use]
     pub fn zoomed(&self, about: DVec3, factor: f64) -> Self {
         let [least, most] = [ZOOMS[0].min(self.zoom), ZOOMS[1].max(self.zoom)];
@@ -83,7 +81,7 @@ impl SurfacePlacement {
         .moved(DVec3::ZERO)
     }
 
-    /// Turned about an axis of the desk through a point of it, rad.
+    /// This placement rotated by an angle, rad, about an axis of the desk through a point of it.
     #[must_use]
     pub fn turned(&self, about: DVec3, axis: DVec3, angle: f64) -> Self {
         let turn = rotation(axis, angle);
@@ -97,8 +95,8 @@ impl SurfacePlacement {
         .moved(DVec3::ZERO)
     }
 
-    /// Tilted about the horizontal axis of the desk through a point of it, rad; as it is where that would
-    /// turn it away from the painter.
+    /// This placement tilted by an angle, rad, about the horizontal axis of the desk through a point of it; unchanged
+    /// where that would turn it away from the painter.
     #[must_use]
     pub fn tilted(&self, about: DVec3, angle: f64) -> Self {
         let tilted = self.turned(about, DVec3::X, angle);
@@ -133,7 +131,7 @@ mod tests {
         zoom: 1.0,
     };
 
-    /// The place on the surface under a point of the desk, its own lengths.
+    /// The place on the surface, in its own lengths, under a point of the desk.
     fn under(placement: &SurfacePlacement, desk: DVec3) -> DVec3 {
         placement.pose.inverse().point(desk) / placement.zoom
     }

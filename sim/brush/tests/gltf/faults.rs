@@ -1,4 +1,4 @@
-//! What is wrong with a model is said with the name of the node and the field.
+//! Errors of a model name the node and the field.
 
 use maulstick_brush::gltf;
 use proptest::prelude::*;
@@ -152,7 +152,7 @@ fn nodes_that_are_no_tree() {
 fn vertices_that_nothing_moves() {
     let bare = error(|model| model.weights[13] = vec![(4, 0.0)]);
     says(&bare, &["1 vertices of 'Head'", "no weights", "-6"]);
-    // What Blender's exporter makes of them.
+    // Neutral joints, as Blender's exporter makes them.
     let neutral = error(|model| {
         model.add_spine(1, None);
         model.bones[16].name = "neutral_bone".into();
@@ -185,7 +185,7 @@ fn numbers_that_are_none() {
         says(&bind, &["inverse bind", "'Head'", "not finite"]);
     }
     let far = error_of(|json, _| json["nodes"][4]["translation"] = json!([1e39, 0.0, 0.0]));
-    // The JSON reader of some builds refuses such a number by itself.
+    // Some builds of the JSON reader refuse such a number themselves.
     if !far.contains("number out of range") {
         says(&far, &["transform", "spine0.1", "not finite"]);
     }
@@ -304,7 +304,7 @@ fn lists_that_cannot_be_read() {
     says(&corner, &["faces", "vertex 65535"]);
 }
 
-/// Few bones and vertices, so that many cases are quick.
+/// A model of few bones and vertices, for quick cases.
 fn small() -> Model {
     let mut model = Model::round();
     model.faces.truncate(4);

@@ -17,7 +17,7 @@ fn surface(brush: &BrushFile) -> &Surface {
     brush.surface.as_ref().expect("a skin")
 }
 
-/// Whether numbers are the same but for single precision.
+/// True if numbers agree to single precision.
 fn near(one: &[f64], other: &[f64]) -> bool {
     let close = |(a, b): (&f64, &f64)| (a - b).abs() <= 5.1e-6 * (1.0 + a.abs());
     one.len() == other.len() && one.iter().zip(other).all(close)

@@ -24,8 +24,7 @@ pub(crate) struct Model {
     /// Custom properties of the mesh object and of the armature.
     pub(crate) object: Value,
     pub(crate) armature: Value,
-    /// By how much the armature's object is larger, moved and turned about Blender's z; the model
-    /// stays where it is.
+    /// Scale of the armature's object, which is also moved and turned about Blender's z; the model stays where it is.
     pub(crate) scale: f64,
     pub(crate) shift: [f64; 3],
     pub(crate) quarter_turns: u32,
@@ -115,7 +114,7 @@ impl Model {
             .push((0..AROUND).rev().map(|i| lowest + i).collect());
     }
 
-    /// Another spine: a chain of so many bones of a millimetre that begins at a bone.
+    /// Adds a spine: a chain of `joints` bones of a millimetre that begins at a bone.
     pub(crate) fn add_spine(&mut self, joints: usize, mut parent: Option<usize>) {
         for i in 0..joints {
             let mut bone = self.bones[1].clone();

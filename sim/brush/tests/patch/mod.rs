@@ -1,4 +1,4 @@
-//! Where a head touches the surface: what of its strips lies within the reach of a film of paint.
+//! Contact patch of a head: the cells of its strips within the reach of a film of paint.
 
 use glam::DVec2;
 use maulstick_brush::{BrushFile, BrushModel, Head, HeadPose, Hold};
@@ -9,7 +9,7 @@ use maulstick_types::stylus::{StylusPose, StylusSample};
 
 /// Side of the cells that count as touched, m.
 pub(crate) const CELL_M: f64 = 2.5e-4;
-/// Places between two stations of a strip that are looked at.
+/// Number of places tested between two stations of a strip.
 const BETWEEN: u32 = 16;
 
 /// A brush over a canvas whose lower left corner is the desk's origin.
@@ -105,7 +105,7 @@ impl Bench {
     }
 }
 
-/// How wide a patch is along a unit vector, m.
+/// Width of a patch along a unit vector, m.
 #[allow(dead_code, reason = "one test of several measures it")]
 pub(crate) fn width(patch: &[DVec2], along: DVec2) -> f64 {
     let places = patch.iter().map(|p| p.dot(along));

@@ -1,10 +1,10 @@
-//! Content of pages, and the document that holds those that are not in memory.
+//! Content of pages, and the document that stores those outside of memory.
 
 use std::any::{Any, TypeId};
 
 use crate::planes::Planes;
 
-/// Storage of pages that are not in memory.
+/// Storage of pages outside of memory.
 pub trait Backing: Send + Sync {
     /// Reads a page whose [`Content`] has the type `kind`: the box holds that type.
     ///
@@ -12,39 +12,39 @@ pub trait Backing: Send + Sync {
     /// [`PageError`].
     fn read(&self, id: u64, kind: TypeId) -> Result<Box<dyn Any>, PageError>;
 
-    /// False while what it stores may not be read back, as where its disk fails: then no page leaves memory.
+    /// False while stored pages may be unreadable, for example on a failing disk: then no page leaves memory.
     fn is_at_hand(&self) -> bool {
         true
     }
 }
 
-/// A page without content.
+/// Errors of reading a page.
 #[derive(Debug, thiserror::Error)]
 pub enum PageError {
     /// It was never stored, and left memory.
     #[error("page {0} has no document")]
     Unbacked(u64),
-    /// It is of a kind that is not stored.
+    /// Its kind is not stored.
     #[error("page {0} is of a kind that no document holds")]
     Kind(u64),
-    /// It is stored as something else.
+    /// It is stored as another kind.
     #[error("page {0} holds something else")]
     Other(u64),
-    /// Its storage does not give it.
+    /// Its storage cannot read it.
     #[error(transparent)]
     Storage(Box<dyn std::error::Error + Send + Sync>),
 }
 
 /// Content of a page.
 pub trait Content: Send + Sync + Sized + 'static {
-    /// Bytes in memory.
+    /// Size in memory, bytes.
     fn bytes(&self) -> usize;
-    /// Stand-in for a page that cannot be read.
+    /// Substitute for an unreadable page.
     fn nothing() -> Self;
 }
 
 impl dyn Backing {
-    /// Reads a page of a kind that is known.
+    /// Reads a page of a known kind.
     pub(super) fn fetch<T: Content>(&self, id: u64) -> Result<T, PageError> {
         let read = self.read(id, TypeId::of::<T>())?.downcast();
         let content = read.map_err(|_| PageError::Other(id))?;

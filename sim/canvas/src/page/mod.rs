@@ -1,8 +1,7 @@
 //! Pages: paint that is in memory, in the painting's document, or in both.
 //!
-//! A page never changes. While it is in memory only, it stays there; once its document has it, it may
-//! leave when memory gets short, and comes back when somebody reads it. The last one to forget a page
-//! lets the document delete it.
+//! A page never changes. It stays in memory while it is only there; once its document has it, it may leave when memory
+//! gets short, and is read back on demand. The last owner to drop a page lets the document delete it.
 
 pub mod backing;
 
@@ -13,9 +12,9 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
 use backing::{Backing, Content, PageError};
 
-/// Something that can leave memory.
+/// Content that can leave memory.
 pub(crate) trait Evict: Send + Sync {
-    /// Leaves memory, if it may, and returns how many bytes that were; `None` if it has to stay for now.
+    /// Leaves memory if possible, and returns the number of bytes freed; `None` if it must stay for now.
     fn evict(&self) -> Option<usize>;
 }
 
@@ -24,16 +23,16 @@ pub(crate) trait Evict: Send + Sync {
 pub struct PageCounts {
     /// Bytes of pages in memory.
     pub resident: usize,
-    /// Most bytes of pages in memory, as far as they can leave it.
+    /// Limit on the bytes of pages in memory that can leave it.
     pub bound: usize,
-    /// Pages that were read back.
+    /// Number of pages read back.
     pub fetched: u64,
-    /// Bytes that pages take in the document.
+    /// Size of pages in the document, bytes.
     pub stored: u64,
 }
 
 impl PageCounts {
-    /// Bytes that the painting takes where it is stored: in its document, or in memory.
+    /// Size of the painting in its storage, the document or memory, bytes.
     #[must_use]
     pub fn held(&self) -> u64 {
         match self.stored {
@@ -43,7 +42,7 @@ impl PageCounts {
     }
 }
 
-/// The pages of one painting.
+/// Pager of one painting.
 pub struct Pager {
     backing: OnceLock<Arc<dyn Backing>>,
     next: AtomicU64,
@@ -51,7 +50,7 @@ pub struct Pager {
     resident: AtomicUsize,
     stored: AtomicU64,
     fetched: AtomicU64,
-    /// So many pages may come before any is asked again to leave.
+    /// Number of pages to come before eviction is tried again.
     rest: AtomicUsize,
     ring: Mutex<VecDeque<Weak<dyn Evict>>>,
     dead: Mutex<Vec<u64>>,
@@ -80,8 +79,8 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Pager {
-    /// Pages of a painting that has a document: at most `bound` bytes of those that are stored stay
-    /// in memory, and new ones are numbered from `next` on.
+    /// Pager of a painting with a document: at most `bound` bytes of stored pages stay in memory, and new ones are
+    /// numbered from `next` on.
     #[must_use]
     pub fn backed(backing: Arc<dyn Backing>, bound: usize, next: u64) -> Arc<Self> {
         let pager = Self {
@@ -93,8 +92,8 @@ impl Pager {
         Arc::new(pager)
     }
 
-    /// Has pages of a painting that was in memory alone leave it from now on, those that come: at most
-    /// `bound` bytes of what is stored stay. A painting gets a document once.
+    /// Lets later pages of a painting that was in memory alone leave it: at most
+    /// `bound` bytes of stored ones stay. A painting gets a document once.
     pub fn back(&self, backing: Arc<dyn Backing>, bound: usize) {
         if self.backing.set(backing).is_ok() {
             self.bound.store(bound, Relaxed);
@@ -107,12 +106,12 @@ impl Pager {
         LOOSE.get_or_init(Arc::default)
     }
 
-    /// A number that no other page or dry layer of the painting has.
+    /// A new number, unique among the pages and dry layers of the painting.
     pub fn number(&self) -> u64 {
         self.next.fetch_add(1, Relaxed)
     }
 
-    /// The number that the next page gets.
+    /// The number of the next page.
     #[must_use]
     pub fn next_number(&self) -> u64 {
         self.next.load(Relaxed)
@@ -138,13 +137,13 @@ impl Pager {
         locked(&self.dead).push(id);
     }
 
-    /// Error of the first page that could not be read.
+    /// Error of the first unreadable page.
     #[must_use]
     pub fn fault(&self) -> Option<&str> {
         self.fault.get().map(String::as_str)
     }
 
-    /// Counts something that came into memory and can leave it.
+    /// Counts content that came into memory and can leave it.
     pub(crate) fn enter(&self, bytes: usize, what: Weak<dyn Evict>) {
         self.resident.fetch_add(bytes, Relaxed);
         if self.bound.load(Relaxed) == usize::MAX {
@@ -162,7 +161,8 @@ impl Pager {
         {
             return;
         }
-        // If no page could leave, none is asked again until the document has another one, or many came.
+        // If no page could leave, the next attempt is after the document has stored another one, or after many new
+        // pages.
         let rest = self.rest.load(Relaxed);
         if rest > 0 {
             self.rest.store(rest - 1, Relaxed);
@@ -204,9 +204,9 @@ struct Kept<T: Content> {
     pager: Arc<Pager>,
     content: Mutex<Option<Arc<T>>>,
     used: AtomicBool,
-    /// Bytes in the document; 0 while it is not there.
+    /// Size in the document, bytes; 0 while it is not there.
     stored: AtomicUsize,
-    /// The page of which this one is a later state.
+    /// The page that this one is a later state of.
     base: Weak<Kept<T>>,
 }
 
@@ -216,7 +216,7 @@ impl<T: Content> Evict for Kept<T> {
             return None;
         }
         let mut content = self.content.try_lock().ok()?;
-        // Whoever reads it holds it in memory anyway.
+        // A reader holds it in memory anyway.
         match content.as_ref() {
             Some(shared) if Arc::strong_count(shared) > 1 => None,
             _ => Some(content.take().map_or(0, |content| content.bytes())),
@@ -268,10 +268,10 @@ impl<T: Content> Page<T> {
         Self(kept)
     }
 
-    /// A new page; `base` is the one of which it is a later state.
+    /// A new page; `base` is its earlier state.
     #[must_use]
     pub fn new(pager: &Arc<Pager>, content: Arc<T>, base: Option<&Self>) -> Self {
-        // A page that is not stored may never be: then it is a later state of the one before.
+        // An unstored page may never be stored: then this is a later state of the base's own base.
         let base = base.map_or_else(Weak::new, |base| match base.stored_bytes() {
             0 => base.0.base.clone(),
             _ => Arc::downgrade(&base.0),
@@ -285,7 +285,7 @@ impl<T: Content> Page<T> {
         Self::new(Pager::loose(), Arc::new(content), None)
     }
 
-    /// A page that its document has, `stored` bytes of it.
+    /// A page in the document, of `stored` bytes.
     #[must_use]
     pub fn stored(pager: &Arc<Pager>, id: u64, stored: usize) -> Self {
         let page = Self::make(pager, id, None, Weak::new());
@@ -293,13 +293,13 @@ impl<T: Content> Page<T> {
         page
     }
 
-    /// Its number.
+    /// Number of the page.
     #[must_use]
     pub fn id(&self) -> u64 {
         self.0.id
     }
 
-    /// Its painting's pages.
+    /// Pager of its painting.
     #[must_use]
     pub fn pager(&self) -> &Arc<Pager> {
         &self.0.pager
@@ -311,19 +311,19 @@ impl<T: Content> Page<T> {
         Arc::ptr_eq(&self.0, &other.0)
     }
 
-    /// The page of which it is a later state, if that is still referenced.
+    /// Its earlier state, if that is still referenced.
     #[must_use]
     pub fn base(&self) -> Option<Self> {
         self.0.base.upgrade().map(Self)
     }
 
-    /// Bytes that it takes in the document; 0 while it is not there.
+    /// Size in the document, bytes; 0 while it is not there.
     #[must_use]
     pub fn stored_bytes(&self) -> usize {
         self.0.stored.load(Relaxed)
     }
 
-    /// Bytes that it takes where it is stored: in the document, or in memory.
+    /// Size in its storage, the document or memory, bytes.
     #[must_use]
     pub fn held_bytes(&self) -> usize {
         match self.stored_bytes() {
@@ -332,7 +332,7 @@ impl<T: Content> Page<T> {
         }
     }
 
-    /// Bytes that it takes in memory now.
+    /// Size in memory now, bytes.
     #[must_use]
     pub(crate) fn resident_bytes(&self) -> usize {
         locked(&self.0.content)
@@ -346,7 +346,7 @@ impl<T: Content> Page<T> {
         locked(&self.0.content).clone()
     }
 
-    /// Notes that the document has it, so that it may leave memory.
+    /// Marks it as stored in the document, so that it may leave memory.
     pub fn note_stored(&self, bytes: usize) {
         let bytes = bytes.max(1);
         let before = self.0.stored.swap(bytes, Relaxed);
@@ -356,15 +356,15 @@ impl<T: Content> Page<T> {
         self.0.pager.rest.store(0, Relaxed);
     }
 
-    /// Its content, from the document if it is not in memory. A page that cannot be read is empty, and [`Pager::fault`]
-    /// says why.
+    /// Its content, read from the document if it is not in memory. An unreadable page is empty, and [`Pager::fault`]
+    /// has the reason.
     #[must_use]
     pub fn get(&self) -> Arc<T> {
         self.0.used.store(true, Relaxed);
         if let Some(content) = self.peek() {
             return content;
         }
-        // Unlocked: the document's thread, which is asked here, may look at this page meanwhile.
+        // Unlocked, because the document's thread, which reads here, may look at this page meanwhile.
         let pager = &self.0.pager;
         let read = match pager.backing.get() {
             Some(backing) => backing.fetch(self.0.id),
@@ -378,7 +378,7 @@ impl<T: Content> Page<T> {
         self.keep(read)
     }
 
-    /// Gives it its content, as its document has it, before anybody reads it.
+    /// Restores its content from its document, before its first read.
     pub fn put_back(&self, content: T) {
         self.keep(Arc::new(content));
     }

@@ -1,6 +1,6 @@
-//! Smooth noise of a seed: the same bytes on every machine.
+//! Smooth noise from a seed: the same bytes on every machine.
 
-/// Value noise on lattices of side 1; each channel is one of its own.
+/// Value noise on lattices of side 1, with independent channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LatticeNoise {
     /// Seed of all values.
@@ -18,7 +18,7 @@ impl LatticeNoise {
         row(0) + (row(1) - row(0)) * v
     }
 
-    /// Noise along the line of number `line`, 0 to 1; lines do not depend on each other.
+    /// Noise along the line of number `line`, 0 to 1; lines are independent.
     #[must_use]
     pub(crate) fn along(&self, channel: u64, line: i64, x: f64) -> f64 {
         let i = x.floor();
@@ -40,7 +40,7 @@ impl LatticeNoise {
     }
 }
 
-/// 0 to 1 as t is, level at both ends.
+/// Eases t from 0 to 1, level at both ends.
 #[must_use]
 pub(crate) fn ease(t: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)

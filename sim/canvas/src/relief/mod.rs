@@ -1,4 +1,4 @@
-//! The relief of a bare ground; what has dried on it is added where a window is opened.
+//! Relief of a bare ground; a window adds the dried paint when it is opened.
 
 mod lattice_noise;
 pub mod ride;
@@ -14,8 +14,8 @@ use crate::tile::TileId;
 use tooth::Tooth;
 use tooth_picture::PictureTooth;
 
-/// Largest number of cached heights; beyond that they are computed anew.
-const KEPT: usize = 1024;
+/// Greatest number of tiles with cached heights.
+const CACHED_TILES_MAX: usize = 1024;
 
 /// Source of the heights.
 #[derive(Debug)]
@@ -60,7 +60,7 @@ impl Relief {
         }
     }
 
-    /// Cells of a metre.
+    /// Cells per metre.
     #[must_use]
     pub fn cells_per_m(&self) -> f32 {
         (1.0 / self.cell_m) as f32
@@ -88,8 +88,8 @@ impl Relief {
             Shape::Picture(tooth) => tooth.tile(id).into(),
             Shape::Flat => vec![0.0; TILE_CELLS].into(),
         };
-        if tiles.len() >= KEPT {
-            // Whichever way work goes over the surface, what is farthest is not what comes next.
+        if tiles.len() >= CACHED_TILES_MAX {
+            // Whatever the direction of work over the surface, the farthest tile is not the next one.
             let ends = [tiles.first_key_value(), tiles.last_key_value()];
             let [first, last] = ends.map(|end| end.map_or(0, |(other, _)| other.y.abs_diff(id.y)));
             if first > last {

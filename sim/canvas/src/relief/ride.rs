@@ -1,23 +1,23 @@
-//! The ride of a bristle: the height at which it lies on the relief under it.
+//! The ride of a bristle: the height at which it rests on the relief under it.
 //!
-//! A bristle is stiff along itself, so it bridges what is narrower than its bend: its lower side is the
-//! upper envelope of the relief under parabolas of one radius of curvature (grey dilation by a
-//! paraboloid, which is separable; van den Boomgaard and Smeulders 1994). Tooth alone is bridged from
-//! peak to peak; between ridges of dry paint it hangs by d²/2ρ at a distance of d.
+//! A bristle is stiff along its length, so it bridges gaps narrower than its bend: its lower side is the upper envelope
+//! of the relief under parabolas of one radius of curvature (grey dilation by a paraboloid, which is separable; van den
+//! Boomgaard and Smeulders 1994). Tooth alone is bridged from peak to peak; between ridges of dry paint it hangs by
+//! d²/2ρ at a distance of d.
 
 /// Radius of curvature to which a bristle bends under the hand, m.
 pub const RADIUS_M: f64 = 28e-3;
-/// The farthest that a ridge carries a bristle, m.
+/// Greatest distance over which a ridge carries a bristle, m.
 pub const REACH_M: f64 = 3e-3;
 
-/// The farthest that a ridge carries a bristle, cells of `cell_m`.
+/// Greatest distance over which a ridge carries a bristle, cells of `cell_m`.
 #[must_use]
 pub fn reach(cell_m: f64) -> usize {
     (REACH_M / cell_m).ceil() as usize
 }
 
-/// The ride over `base`, rows of `width` cells, both in cells; exact where the planes continue by
-/// [`reach`] cells on all sides.
+/// The ride over `base`, rows of `width` cells, both in cells; exact where the planes extend by [`reach`] cells on all
+/// sides.
 #[must_use]
 pub fn ride(base: &[f32], width: usize, cells_per_m: f64) -> Vec<f32> {
     let (low, high) = base

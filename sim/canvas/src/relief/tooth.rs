@@ -14,9 +14,9 @@ use crate::tile::TileId;
 /// Construction of a ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Make {
-    /// Threads by this distance, m, and the share of their length that is slubs.
+    /// Threads at this pitch, m, and the share of their length that is slubs.
     Woven { pitch_m: f64, slubs: f64 },
-    /// Noise whose largest bumps are this wide, m.
+    /// Noise with largest bumps of this width, m.
     Grained { size_m: f64 },
 }
 
@@ -24,7 +24,7 @@ enum Make {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Kind {
     name: &'static str,
-    /// From the highest peak to the deepest valley, m.
+    /// Depth of the deepest valley below the highest peak, m.
     depth_m: f64,
     make: Make,
 }
@@ -158,7 +158,7 @@ mod tests {
         let id = TileId { x: 0, y: 0 };
         assert_eq!(tooth.tile(id), tooth.tile(id));
         assert_ne!(tooth.tile(id), other.tile(id));
-        // The last column of a tile and the first of the next differ as neighbours do.
+        // The last column of a tile and the first of the next differ like neighbours.
         let (left, right) = (tooth.tile(id), tooth.tile(TileId { x: 1, y: 0 }));
         let step = |a: f32, b: f32| (a - b).abs();
         let within: f32 = (0..TILE)

@@ -13,19 +13,19 @@ use crate::error::CanvasError;
 use crate::planes::TILE_CELLS;
 use crate::tile::TileId;
 
-/// Widths that a picture may have on a surface, mm.
+/// Range of a picture's width on a surface, mm.
 pub const WIDTH_MM: std::ops::RangeInclusive<f64> = 1.0..=10_000.0;
-/// Depths that it may have, µm.
+/// Range of its depth, µm.
 pub const DEPTH_UM: std::ops::RangeInclusive<f64> = 1.0..=1000.0;
 
-/// The name of such a tooth.
+/// Parts of the name of such a tooth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ToothName {
     /// Hash of the picture.
     pub hash: String,
     /// Width of the picture on the surface, mm.
     pub width_mm: f64,
-    /// From white to black, µm.
+    /// Depth of black below white, µm.
     pub depth_um: f64,
 }
 
@@ -41,7 +41,7 @@ impl fmt::Display for ToothName {
 }
 
 impl ToothName {
-    /// Reads a name that begins with [`IMAGE`].
+    /// Parses a name that begins with [`IMAGE`].
     ///
     /// # Errors
     /// [`CanvasError`] with what is wrong with it.
@@ -70,11 +70,11 @@ impl ToothName {
     }
 }
 
-/// The tooth of one surface.
+/// Tooth of one surface.
 #[derive(Clone, Debug)]
 pub struct PictureTooth {
     pixels: Arc<Heights>,
-    /// Pixels of a metre.
+    /// Pixels per metre.
     pixels_per_m: f64,
     depth_m: f64,
     cell_m: f64,
@@ -96,7 +96,7 @@ impl PictureTooth {
         })
     }
 
-    /// From the highest to the deepest, m.
+    /// Depth of black below white, m.
     #[must_use]
     pub fn depth_m(&self) -> f64 {
         self.depth_m

@@ -1,27 +1,26 @@
-//! A primed plain weave: threads that go over and under each other, as unevenly as flax is spun, and the
-//! gesso in the valleys between them.
+//! A primed plain weave: threads that pass over and under each other, with the unevenness of spun flax, and the gesso
+//! in the valleys between them.
 //!
-//! Each thread has a width and a strength of its own and wanders a little. Here and there it has a *slub*,
-//! a thick place a few threads long that was spun in, which stands higher and pushes its neighbours aside.
-//! Flax has many of them, cotton few. The gesso is scraped on: it lies level in the valleys, thin over
-//! the threads, and more of it in some places than in others.
+//! Each thread has a width and a strength of its own and wanders a little. Here and there it has a *slub*, a thick
+//! place a few threads long that was spun in, which stands higher and pushes its neighbours aside. Flax has many of
+//! them, cotton few. The gesso is scraped on: it is level in the valleys, thin over the threads, and uneven in amount.
 
 use super::lattice_noise::{LatticeNoise, ease};
 
 /// Variation of the width of a thread, in thread spacings.
 const UNEVEN: f64 = 0.26;
-/// Wander that all threads share.
+/// Common wander of all threads.
 const WANDER: f64 = 0.3;
 /// Extra width of a thread at its slub.
 const SLUB_WIDTH: f64 = 0.34;
 /// Length of a slub with the thin stretch to the next, in thread spacings.
 const SLUB_LENGTH: f64 = 5.0;
-/// Height of the gesso in the valleys, of the depth of the relief, and its variation.
+/// Height of the gesso in the valleys, relative to the depth of the relief, and its variation.
 const GESSO: [f64; 2] = [0.24, 0.1];
-/// Over what heights it goes up the flank of a thread.
+/// Height of the gesso's meniscus on the flank of a thread.
 const MENISCUS: f64 = 0.24;
 
-/// A weave whose threads are 1 apart in the mean.
+/// A weave with a mean thread spacing of 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Weave {
     /// Its randomness.
@@ -34,7 +33,7 @@ pub(crate) struct Weave {
 #[derive(Clone, Copy, Debug)]
 struct Thread {
     number: i64,
-    /// From one edge to the other, 0 to 1.
+    /// Place across the thread, from edge to edge, 0 to 1.
     across: f64,
     slub: f64,
 }
@@ -58,7 +57,7 @@ impl Weave {
         let weft = self.thread(4, y + wander(2, x, y), x);
         let warp_over = (warp.number + weft.number).rem_euclid(2) == 0;
         let over = if warp_over { 1.0 } else { -1.0 };
-        // A thread is highest where it goes over another one, and lowest under it.
+        // A thread is highest where it passes over another one, and lowest under it.
         let back = |axis: u64, thread: &Thread, over: f64, other: f64| {
             let own = 0.58 + 0.26 * noise.hash(axis, [thread.number, 0]) + 0.24 * thread.slub;
             own * thread.arch() * (0.56 + 0.44 * over * other)
@@ -97,7 +96,7 @@ impl Weave {
         }
     }
 
-    /// Extra thickness of a thread there: 0 to 1, at the middle of a slub.
+    /// Additional thickness of a thread: 0 to 1, at the middle of a slub.
     fn slub(&self, axis: u64, number: i64, along: f64) -> f64 {
         let noise = self.noise.along(axis + 16, number, along / SLUB_LENGTH);
         let least = 1.0 - self.slubs;
@@ -154,7 +153,7 @@ mod tests {
 
     #[test]
     fn the_surface_has_no_steps_but_where_threads_cross() {
-        // From one thread to the next both backs are at 0: gesso joins them.
+        // At the boundary between threads both backs are at 0: gesso joins them.
         let weave = weave(0.3);
         let row: Vec<f64> = (0..60_000)
             .map(|i| weave.height([f64::from(i) * 1e-3, 7.3]))

@@ -1,4 +1,4 @@
-//! Connections to files that came from anywhere: nothing that a file says is executed.
+//! Connections to files from anywhere: nothing in a file is executed.
 
 use std::path::Path;
 
@@ -7,12 +7,11 @@ use rusqlite::{Connection, OpenFlags};
 
 use crate::error::DocumentError;
 
-/// Opens a file, through the SQLite VFS of a name if it is not the usual one. Its triggers and views do nothing, its
-/// expressions call no function that has effects, and no statement changes its schema behind SQLite's back. Each connection to
-/// a painting is made here. Sources: "Defense Against The Dark Arts", <https://sqlite.org/security.html>.
+/// Opens a file, with a named SQLite VFS if it is not the default. Its triggers and views do nothing, its expressions
+/// call no function with side effects, and no statement changes its schema behind SQLite's back. Each connection to a
+/// painting is made here. Source: "Defense Against The Dark Arts", <https://sqlite.org/security.html>.
 ///
-/// # Errors
-/// The error of SQLite.
+/// # Errors The error of SQLite.
 pub(crate) fn connect(
     path: &Path,
     flags: OpenFlags,
@@ -38,7 +37,7 @@ mod tests {
     use super::*;
     use crate::file::database::{Access, Database};
 
-    /// Settings that keep a file from having anything executed: name, setting, required value.
+    /// Settings that keep a file from executing anything: name, setting, required value.
     const SETTINGS: [(&str, DbConfig, bool); 4] = [
         ("DEFENSIVE", DbConfig::SQLITE_DBCONFIG_DEFENSIVE, true),
         (
@@ -50,7 +49,7 @@ mod tests {
         ("views", DbConfig::SQLITE_DBCONFIG_ENABLE_VIEW, false),
     ];
 
-    /// Names of the settings that SQLite itself says to be otherwise.
+    /// Names of the settings that SQLite reports with another value.
     fn left_open(connection: &Connection) -> Vec<&'static str> {
         let settings = SETTINGS.into_iter();
         settings

@@ -1,4 +1,4 @@
-//! The file, opened for one program alone, and its pages, loads and shown tiles read one by one.
+//! The file, opened for one program alone, and access to its pages, loads and displayed tiles.
 
 use std::path::Path;
 
@@ -24,20 +24,20 @@ pub enum Access {
     Read,
 }
 
-/// Bytes of a page of the file.
+/// Size of a page of the file, bytes.
 const PAGE_BYTES: u32 = 8192;
 /// The first bytes of every SQLite file.
 const MAGIC: &[u8; 16] = b"SQLite format 3\0";
-/// A page's chain of differences has at most this many links.
+/// Greatest number of links in a page's chain of differences.
 pub(crate) const DEPTH_MAX: i64 = 8;
 
 /// An open painting.
 #[derive(Debug)]
 pub struct Database {
     pub(crate) connection: Connection,
-    /// zstd's level of the data that is written.
+    /// zstd level of the data written.
     pub(crate) level: i32,
-    /// Tells a disk that fails from a damaged file. It is dropped after the connection.
+    /// Probe that distinguishes a failing disk from a damaged file. It is dropped after the connection.
     probe: Option<Probe>,
     /// Registration that keeps the rest of the process from opening the file, which would drop its locks.
     _registered: Option<OpenDatabase>,
@@ -45,10 +45,9 @@ pub struct Database {
     was_unclosed: bool,
 }
 
-/// Checks that the journal of a closed painting is merged into its file, as it must be before the file is renamed.
+/// Checks that the journal of a closed painting is merged into its file, as is required before the file is renamed.
 ///
-/// # Errors
-/// [`DocumentError::Unmerged`] if there was no room to merge it.
+/// # Errors [`DocumentError::Unmerged`] if there was no room to merge it.
 pub(crate) fn merged(path: &Path) -> Result<(), DocumentError> {
     match length(&companion(&resolved(path), "-wal")) {
         Some(1..) => Err(DocumentError::Unmerged(path.to_owned())),
@@ -56,7 +55,7 @@ pub(crate) fn merged(path: &Path) -> Result<(), DocumentError> {
     }
 }
 
-/// True if a painting is to be created there.
+/// True if a painting is to be created at this path.
 pub(crate) fn is_new(path: &Path) -> Result<bool, DocumentError> {
     let Some(length_found) = length(path) else {
         if is_companion(path) {
@@ -102,10 +101,10 @@ pub(crate) fn is_new(path: &Path) -> Result<bool, DocumentError> {
 
 /// Offset of the write version in a SQLite file.
 const WRITE_VERSION: usize = 18;
-/// Its value if no write-ahead log was ever requested, as in every new painting.
+/// Write version of a file that never had a write-ahead log, as every new painting.
 const ROLLBACK: u8 = 1;
 
-/// True if these may be a painting's first bytes, a few of them damaged.
+/// True if these may be the first bytes of a painting, a few of them damaged.
 fn damaged_head(head: &[u8]) -> bool {
     head.iter()
         .zip(MAGIC)
@@ -115,22 +114,21 @@ fn damaged_head(head: &[u8]) -> bool {
 }
 
 impl Database {
-    /// Connection to the file, for rows that have no method here.
+    /// Connection to the file, for rows without a method here.
     #[must_use]
     pub fn connection(&self) -> &Connection {
         &self.connection
     }
 
-    /// zstd's level of the data that is written.
+    /// zstd level of the data written.
     #[must_use]
     pub fn level(&self) -> i32 {
         self.level
     }
 
-    /// Opens a painting; `vfs` is the name of the SQLite VFS, if not the usual one. True if it was created.
+    /// Opens a painting; `vfs` is the name of the SQLite VFS, if not the default. The flag is true if it was created.
     ///
-    /// # Errors
-    /// Any [`DocumentError`].
+    /// # Errors Any [`DocumentError`].
     pub fn open(
         path: &Path,
         access: Access,
@@ -193,12 +191,12 @@ impl Database {
         Ok(new)
     }
 
-    /// Locks the file for this program and sets how it is written.
+    /// Locks the file for this program and sets its mode of writing.
     fn lock(&self, path: &Path) -> Result<(), DocumentError> {
         let connection = &self.connection;
         // The system may release the locks of a killed program late.
         connection.busy_timeout(std::time::Duration::from_secs(1))?;
-        // A painting that turns out to be damaged keeps its journal as it is.
+        // A damaged painting keeps its journal unchanged.
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
         if connection.is_readonly("main")? {
             return Err(DocumentError::ReadOnly("no permission to write".to_owned()));
@@ -250,10 +248,9 @@ impl Database {
         })
     }
 
-    /// Closes it. A journal that was there when it was opened stays as it is; one of its own is merged.
+    /// Closes the file. An earlier journal stays unchanged; a new one is merged.
     ///
-    /// # Errors
-    /// The error of SQLite.
+    /// # Errors The error of SQLite.
     pub fn close_unchanged(self) -> Result<(), DocumentError> {
         if self.was_unclosed {
             self.connection.close().map_err(|(_, error)| error.into())
@@ -279,7 +276,7 @@ impl Database {
         self.connection.close().map_err(|(_, error)| error.into())
     }
 
-    /// Closes it without touching a file: other files may have its names.
+    /// Closes it without touching a file, because other files may have its names.
     pub(crate) fn abandon(self) {
         // The connection leaves the journal as it is, see `lock`.
         if let Err((_, error)) = self.connection.close() {
@@ -294,10 +291,9 @@ impl Database {
         }
     }
 
-    /// The same, and what keeps it from being merged.
+    /// Merges the journal into the file, and stays open.
     ///
-    /// # Errors
-    /// The error of SQLite.
+    /// # Errors The reason why it cannot be merged, from SQLite.
     pub(crate) fn try_merge_journal(&self) -> Result<(), DocumentError> {
         let query = "PRAGMA wal_checkpoint(TRUNCATE)";
         Ok(self.connection.query_row(query, params![], |_| Ok(()))?)
@@ -315,7 +311,7 @@ impl Database {
         Ok(())
     }
 
-    /// The error of the disk, where that is why something is said to be damaged.
+    /// The error, or the disk's where that is the cause of apparent damage.
     pub(crate) fn judged(&self, error: DocumentError) -> DocumentError {
         match &self.probe {
             Some(probe) => probe.judged(error),
@@ -375,10 +371,9 @@ impl Database {
         loads::decode(&data).map_err(|defect| damaged(&defect.to_string()))
     }
 
-    /// Checks that it has the tables of this version: what was not locked is not migrated.
+    /// Checks that it has the tables of this version: an unlocked file is not migrated.
     ///
-    /// # Errors
-    /// [`DocumentError::NoPainting`] if not, [`DocumentError::Altered`], or the error of SQLite.
+    /// # Errors [`DocumentError::NoPainting`] if not, [`DocumentError::Altered`], or the error of SQLite.
     pub(crate) fn is_of_this_version(&self) -> Result<(), DocumentError> {
         schema::check(&self.connection)?;
         if schema::has_record(&self.connection)? {
@@ -388,7 +383,7 @@ impl Database {
         }
     }
 
-    /// A tile of a version as it was shown, whatever the light then; `None` if it is absent or damaged.
+    /// A displayed tile of a version, whatever its light; `None` if it is absent or damaged.
     pub(crate) fn shown_under_any_look(&self, place: i64, version: i64) -> Option<Vec<u8>> {
         let query = "SELECT look FROM shown WHERE place = ?1 AND version = ?2";
         let mut statement = self.connection.prepare_cached(query).ok()?;
@@ -396,7 +391,7 @@ impl Database {
         self.shown(place, version, look.ok()?)
     }
 
-    /// A tile as it was shown; `None` if it is absent or damaged.
+    /// A displayed tile; `None` if it is absent or damaged.
     #[must_use]
     pub fn shown(&self, place: i64, version: i64, look: i64) -> Option<Vec<u8>> {
         let query = "SELECT data, sum FROM shown WHERE place = ?1 AND version = ?2 AND look = ?3";
@@ -409,7 +404,7 @@ impl Database {
     }
 }
 
-/// Process that holds the lock of a file, if the system knows it. The file is not opened: closing it again would drop
+/// Process that holds the lock of a file, if the system reports it. The file is not opened: closing it again would drop
 /// this process's own locks.
 #[must_use]
 pub fn lock_holder(path: &Path) -> Option<i32> {

@@ -1,4 +1,4 @@
-//! Paths of a painting's files, and what lies there.
+//! Paths of a painting's files, and checks of what is there.
 
 use std::path::{Path, PathBuf};
 

@@ -1,7 +1,7 @@
-//! Probe of the disk: does it still give the bytes of a painting?
+//! Probe of the disk: tests whether it can still read the bytes of a painting.
 //!
-//! Where the system reports an error on reading, SQLite says that the database is malformed
-//! (`SQLITE_IOERR_CORRUPTFS` in `vdbe.c`), as of a file with wrong bytes. A painting on a disk that fails is not damaged.
+//! Where the system reports a read error, SQLite reports a malformed database (`SQLITE_IOERR_CORRUPTFS` in `vdbe.c`),
+//! as for a file with wrong bytes. A painting on a failing disk is not damaged.
 
 use std::fs::File;
 use std::os::unix::fs::FileExt as _;
@@ -12,11 +12,11 @@ use maulstick_files::companion;
 use crate::error::DocumentError;
 use crate::file::path::resolved;
 
-/// Bytes that are read at once.
+/// Number of bytes read at once.
 const PIECE: usize = 1 << 20;
 
-/// A file that is read beside SQLite. It is opened once it is locked, and closed after SQLite has closed it: when any file
-/// descriptor of it is closed, the system drops all locks that this process has on it.
+/// A separate handle of the file beside SQLite's. It is opened once the file is locked, and closed after SQLite has
+/// closed it: closing any file descriptor of it drops all locks of this process on the file.
 #[derive(Debug)]
 pub(crate) struct Probe {
     file: File,
@@ -24,14 +24,14 @@ pub(crate) struct Probe {
 }
 
 impl Probe {
-    /// A probe of a painting that this process has locked; none where it cannot be opened.
+    /// A probe of a painting locked by this process; `None` where it cannot be opened.
     pub(crate) fn new(path: &Path) -> Option<Self> {
         let path = resolved(path);
         let file = File::open(&path).ok()?;
         Some(Self { file, path })
     }
 
-    /// The error of the disk where bytes of the painting or its journal cannot be read, else the error as it is.
+    /// The disk's error where bytes of the painting or its journal cannot be read, otherwise `error`.
     pub(crate) fn judged(&self, error: DocumentError) -> DocumentError {
         if !matches!(error, DocumentError::Damaged(_)) {
             return error;
@@ -68,11 +68,11 @@ mod tests {
     #[test]
     fn a_file_whose_bytes_cannot_be_read_is_a_fault_of_the_disk() {
         let folder = tempfile::tempdir().expect("a folder");
-        // A folder is opened as a file is, and each read of it fails (EISDIR).
+        // A folder can be opened as a file, and each read of it fails (EISDIR).
         let probe = Probe::new(folder.path()).expect("opened");
         let judged = probe.judged(damaged());
         assert!(matches!(judged, DocumentError::Disk(_)), "{judged:?}");
-        // Only damage is judged.
+        // Only damage is probed.
         let judged = probe.judged(DocumentError::Full);
         assert!(matches!(judged, DocumentError::Full), "{judged:?}");
     }

@@ -15,11 +15,11 @@ use crate::opening;
 /// Way to relocate a painting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relocate {
-    /// The old file stays as it is at that moment; painting continues in the copy.
+    /// The old file stays unchanged; painting continues in the copy.
     Copy,
     /// The file gets the new name.
     Rename,
-    /// A copy is written; painting continues where it was.
+    /// A copy is written; painting continues in the old file.
     Leave,
 }
 
@@ -42,11 +42,11 @@ pub struct Relocation {
 }
 
 /// Checks that a painting can be written at `path`. The journal of a painting that is to be replaced is merged into its
-/// file first, so that nothing of it is left beside the new one.
+/// file first, so that none of it remains beside the new one.
 ///
 /// # Errors
-/// [`DocumentError::Taken`] if a file is there and `replace` is false. Any other error of a file that cannot be opened: a
-/// file that is not a painting, is open or damaged, or whose journal finds no room on the disk is never replaced.
+/// [`DocumentError::Taken`] if the file exists and `replace` is false. Any other error of a file that cannot be opened:
+/// a file that is not a painting, is open or damaged, or whose journal does not fit on the disk is never replaced.
 pub fn make_room(path: &Path, replace: bool) -> Result<(), DocumentError> {
     if is_new(path)? {
         return merged(path).map_err(|_| {
@@ -70,8 +70,8 @@ pub fn unfinished(path: &Path) -> PathBuf {
 /// Copies or renames a closed painting, completely or not at all.
 ///
 /// # Errors
-/// As [`make_room`]; [`DocumentError::Unmerged`] if a part of it is still in its journal; errors of the file system.
-/// Both files are unchanged then.
+/// As [`make_room`]; [`DocumentError::Unmerged`] if a part of it is still in its journal; errors of the file system. On
+/// an error both files are unchanged.
 pub(crate) fn relocate(from: &Path, request: &RelocateRequest) -> Result<(), DocumentError> {
     merged(from)?;
     // By another of its names it would replace itself.
@@ -125,11 +125,10 @@ pub(crate) fn rescue(database: &Database, to: &Path, replace: bool) -> Result<()
     sync_folder(to)
 }
 
-/// Copies the file of a painting whose journal cannot be read any more, as it was when that was last merged into it; false,
-/// and no file at `to`, if it is no whole painting even so.
+/// Copies the file of a painting whose journal is unreadable, in the state of the last merge; false, without a file at
+/// `to`, if that is not a whole painting.
 ///
-/// # Errors
-/// As [`make_room`], or the error of the file system.
+/// # Errors As [`make_room`], or the error of the file system.
 pub(crate) fn copied_without_journal(
     from: &Path,
     to: &Path,
@@ -151,7 +150,7 @@ pub(crate) fn copied_without_journal(
         rename(&part, to, replace)?
     } else {
         std::fs::remove_file(&part)?;
-        // Begun anew there, it must not be mixed with what it replaces.
+        // A new journal there must not be mixed with the file that it replaces.
         if replace && to.exists() {
             std::fs::remove_file(to)?;
         }
@@ -184,7 +183,7 @@ pub(crate) fn revert(from: &Path, request: &RelocateRequest) {
     }
 }
 
-/// Renames a file; without `replace`, only to a name that no file has.
+/// Renames a file; without `replace`, only to an unused name.
 fn rename(part: &Path, to: &Path, replace: bool) -> std::io::Result<()> {
     if replace {
         return std::fs::rename(part, to);

@@ -1,5 +1,5 @@
-//! Checks that the files of an open painting are still at their paths: SQLite keeps writing into files that no longer
-//! have a name, and what is committed there is lost with the process.
+//! Checks that the files of an open painting are still at their paths: SQLite keeps writing into files without a name,
+//! and commits there are lost with the process.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read as _};
@@ -14,11 +14,11 @@ use crate::file::path::{length, resolved};
 #[derive(Debug)]
 pub(crate) struct FileWatch {
     path: PathBuf,
-    /// `None` if the painting is in no file of the system, as with another VFS.
+    /// `None` if the painting is not in a file of the system, as with another VFS.
     file: Option<FileId>,
-    /// `None` until SQLite has created it.
+    /// `None` until SQLite has created the journal.
     journal: Option<FileId>,
-    /// Bytes of both after the last write.
+    /// Sizes of both after the last write, bytes.
     bytes: [u64; 2],
 }
 
@@ -29,13 +29,13 @@ pub(crate) enum FileState {
     InPlace,
     /// The file has a second name.
     Linked,
-    /// This one was removed or replaced.
+    /// The file or its journal was removed or replaced.
     Gone(PathBuf),
-    /// This one was cut short, or its beginning overwritten, and what was in it is lost.
+    /// The file or its journal was cut short, or its beginning overwritten, and its contents are lost.
     Cut(PathBuf),
 }
 
-/// First bytes of a write-ahead log: its magic number, whose last bit says how its checksums are to be read.
+/// First bytes of a write-ahead log: its magic number, whose last bit is the byte order of its checksums.
 const JOURNAL_MAGIC: u32 = 0x377f_0682;
 
 impl FileWatch {
@@ -52,7 +52,7 @@ impl FileWatch {
         watch
     }
 
-    /// Notes how long the files are after a write, which makes neither shorter.
+    /// Records the sizes of the files after a write, which makes neither shorter.
     pub(crate) fn note_sizes(&mut self) {
         let paths = [self.path.clone(), companion(&self.path, "-wal")];
         for (bytes, path) in self.bytes.iter_mut().zip(paths) {
@@ -60,7 +60,7 @@ impl FileWatch {
         }
     }
 
-    /// Notes that the journal was merged into the file, which makes it shorter.
+    /// Records that the journal was merged into the file, which makes it shorter.
     pub(crate) fn note_merged(&mut self) {
         self.bytes[1] = 0;
         self.note_sizes();
@@ -78,7 +78,7 @@ impl FileWatch {
                 }
                 found.nlink()
             }
-            // A disk that fails says so when it is written to.
+            // A failing disk reports an error on writing.
             Err(error) if error.kind() != ErrorKind::NotFound => return FileState::InPlace,
             _ => return FileState::Gone(self.path.clone()),
         };
@@ -99,8 +99,8 @@ impl FileWatch {
         }
     }
 
-    /// Removes the journal of a painting that was moved, if it is still this one's: no other painting could be created
-    /// beside it.
+    /// Removes the journal of a painting that was moved, if it is still this one's: otherwise no other painting could
+    /// be created beside it.
     pub(crate) fn remove_journal(&self) {
         let journal = companion(&self.path, "-wal");
         if self.journal.is_some() && FileId::of(&journal).ok() == self.journal {
@@ -109,8 +109,8 @@ impl FileWatch {
     }
 }
 
-/// True if a journal does not begin as one does: it was cut to nothing and written on since. SQLite locks the painting, not its
-/// journal, so opening and closing that drops no lock.
+/// True if a journal lacks its header: it was truncated and written on since. SQLite locks the painting, not its
+/// journal, so opening and closing the journal drops no lock.
 fn is_overwritten(journal: &Path) -> bool {
     let mut magic = [0; 4];
     let read = File::open(journal).and_then(|mut file| file.read_exact(&mut magic));

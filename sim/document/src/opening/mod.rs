@@ -33,8 +33,8 @@ use stored_files::file;
 pub use stored_files::text;
 use stored_pages::StoredPages;
 
-/// Step of the tile version numbers at each opening: the newest versions before a crash are in no file, and a number
-/// that was displayed must not come to mean another tile.
+/// Increment of the tile version numbers at each opening: the newest versions before a crash are in no file, and a
+/// displayed number must never refer to another tile.
 const VERSION_SKIP: u64 = 1 << 32;
 
 /// A saved painting.
@@ -54,7 +54,7 @@ impl Opened {
         last.unwrap_or(0).max(self.sequencer.next)
     }
 
-    /// Number of journal records to replay: those of a second at most, if it was not closed.
+    /// Number of journal records to replay: at most those of a second, if it was not closed.
     #[must_use]
     pub fn pending(&self) -> usize {
         self.records.len()
@@ -85,7 +85,7 @@ impl Opened {
         &self.restored.kept
     }
 
-    /// Checks that as many tiles, steps and versions are there as were written.
+    /// Checks that all tiles, steps and versions are present.
     ///
     /// # Errors
     /// [`DocumentError::Rows`].
@@ -102,7 +102,7 @@ impl Opened {
         };
         let is_inside = |place: &TilePlace| {
             let mut surfaces = snapshot.scene.surfaces.iter();
-            // Rows of a canvas that was larger before stay in the table.
+            // Rows of an earlier, larger canvas stay in the table.
             surfaces.any(|surface| {
                 let grid = surface.cells.map(|cells| cells.div_ceil(TILE as u32));
                 surface.id == place.0 && place.1.x < grid[0] && place.1.y < grid[1]
@@ -126,16 +126,15 @@ impl Opened {
         Ok(())
     }
 
-    /// Where its record begins, if it has one that this program can execute again.
+    /// Beginning of its record, if this program can replay that.
     #[must_use]
     pub fn beginning(&self) -> Option<&Arc<Beginning>> {
         self.restored.beginning.as_ref()
     }
 
-    /// The painting where its record begins, to accept its records again; `None` without a record.
+    /// The painting at the beginning of its record, for replaying it; `None` without a record.
     ///
-    /// # Errors
-    /// [`EditError`] if the stored parts do not fit together.
+    /// # Errors [`EditError`] if the stored parts do not fit together.
     pub fn first(self) -> Result<Option<Sequencer>, EditError> {
         let Restored {
             beginning,
@@ -154,15 +153,14 @@ impl Opened {
     pub fn sequencer(self) -> Result<Sequencer, EditError> {
         let mut sequencer = self.in_its_midst()?;
         sequencer.record();
-        sequencer.go_on();
+        sequencer.resume();
         Ok(sequencer)
     }
 
-    /// As [`sequencer`](Self::sequencer), for a rig: in a file that a player has prepared for its session brushes stay where
-    /// they are, and all wait for the player.
+    /// [`sequencer`](Self::sequencer) for a rig: in a file that a player has prepared for its session, brushes keep
+    /// their positions, and all wait for the player.
     ///
-    /// # Errors
-    /// As [`sequencer`](Self::sequencer).
+    /// # Errors As [`sequencer`](Self::sequencer).
     pub fn in_rig(self) -> Result<Sequencer, EditError> {
         if !self.sequencer.held {
             return self.sequencer();
@@ -173,10 +171,9 @@ impl Opened {
         Ok(sequencer)
     }
 
-    /// The same for records that follow without a break: brushes stay where they are.
+    /// [`sequencer`](Self::sequencer) for records that follow without a break: brushes keep their positions.
     ///
-    /// # Errors
-    /// As [`sequencer`](Self::sequencer).
+    /// # Errors As [`sequencer`](Self::sequencer).
     pub fn in_its_midst(self) -> Result<Sequencer, EditError> {
         let painting = Painting::restore(self.restored, self.library, self.pager)?;
         let mut sequencer = Sequencer::restored(painting, self.sequencer);
@@ -195,8 +192,7 @@ fn damaged(what: impl ToString) -> DocumentError {
 
 /// True if there is a painting to continue; false if one is to be created.
 ///
-/// # Errors
-/// Any [`DocumentError`]; nothing is changed.
+/// # Errors Any [`DocumentError`]; nothing is changed.
 pub fn glance(path: &Path) -> Result<bool, DocumentError> {
     Ok(scene(path)?.is_some())
 }
@@ -331,7 +327,7 @@ fn tiles(database: &Database, stored: &StoredPages) -> Result<Tiles, DocumentErr
     Ok(tiles)
 }
 
-/// Steps of the history. Neighbours share the tiles that one left to the other.
+/// Steps of the history. Neighbouring steps share the tiles between them.
 fn steps(database: &Database, stored: &StoredPages) -> Result<Vec<Step>, DocumentError> {
     let query = "SELECT id, what, brush, operations, done, deed, tiles, sum FROM step ORDER BY id";
     let mut statement = database.connection.prepare(query)?;
@@ -419,9 +415,9 @@ pub(crate) fn opened(database: &Database, pager: &Arc<Pager>) -> Result<Opened, 
         named: versions(database, &stored)?,
         embedded: pictures(database)?,
         beginning: match beginning::read(database, &stored) {
-            // The painting itself may be whole.
+            // The painting itself may be intact.
             Err(DocumentError::Damaged(what)) => {
-                tracing::warn!("{what}: it begins anew");
+                tracing::warn!("{what}: a new record begins");
                 None
             }
             read => read?,

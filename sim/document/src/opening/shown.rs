@@ -1,4 +1,4 @@
-//! Tiles of the canvas as they were last displayed, read from a closed painting without locking or changing it.
+//! Last displayed tiles of the canvas, read from a closed painting without locking or changing it.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,14 +15,13 @@ use crate::tables::checksum::Checksum;
 use crate::tables::rows::{place_of, shown_number};
 use crate::tables::schema::Table;
 
-/// Tiles that are read at most.
+/// Greatest number of tiles to read.
 const MOST_TILES: usize = 4096;
-/// Bytes of a tile as it is displayed, at most.
+/// Greatest size of a displayed tile, bytes.
 const TILE_BYTES: usize = 1 << 20;
 
-/// Hands on tiles of the canvas as they were last displayed, at the coarsest level of which the longer side has `side`
-/// points at least: the canvas, level, place, and the planes of a frame. What was painted since it was displayed is left out, and so
-/// is what is bare.
+/// Passes on the last displayed tiles of the canvas, at the coarsest level whose longer side has at least `side`
+/// points: the canvas, level, place, and the planes of a frame. Bare tiles and later paint are left out.
 ///
 /// # Errors
 /// [`DocumentError`] if there is no such painting, if it is open or was not closed, or if it is of another version.
@@ -53,7 +52,7 @@ pub fn shown_tiles(
     Ok(())
 }
 
-/// Versions of what is painted, from full detail up to a level.
+/// Versions of painted tiles, from full detail up to a level.
 struct Levels(Vec<BTreeMap<TileId, i64>>);
 
 impl Levels {
@@ -68,7 +67,7 @@ impl Levels {
                 return Err(DocumentError::Damaged("a tile".to_owned()));
             }
             let (surface, id) = place_of(ints[0]);
-            // Rows of a canvas that was larger before stay in the table.
+            // Rows of an earlier, larger canvas stay in the table.
             if surface == CANVAS && id.x < grid[0] && id.y < grid[1] {
                 finest.insert(id, ints[1]);
             }
@@ -93,7 +92,7 @@ impl Levels {
         self.0.get(level as usize).into_iter().flatten()
     }
 
-    /// Hands on a tile, or the finer ones of which it consists where it was not displayed as it is.
+    /// Passes on a tile, or the finer ones that it consists of where it was not displayed itself.
     fn hand_on(
         &self,
         database: &Database,

@@ -1,4 +1,4 @@
-//! Files that a painting is made with, as they are stored in it.
+//! Files of a painting that are stored in it.
 
 use maulstick_canvas::assets::hash_of;
 use rusqlite::params;
@@ -23,8 +23,7 @@ pub(crate) fn file(database: &Database, hash: &str) -> Result<Vec<u8>, DocumentE
 
 /// Text file by its hash.
 ///
-/// # Errors
-/// [`DocumentError::Damaged`] if it is missing, or is not what its hash says.
+/// # Errors [`DocumentError::Damaged`] if it is missing, or does not match its hash.
 pub fn text(database: &Database, hash: &str) -> Result<String, DocumentError> {
     String::from_utf8(file(database, hash)?).map_err(damaged)
 }

@@ -1,4 +1,4 @@
-//! Pages, dry layers and loads of a file as references, by number; their paint is read when it is needed.
+//! Pages, dry layers and loads of a file as references, by number; their paint is read on demand.
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -134,10 +134,9 @@ impl StoredPages {
             .collect()
     }
 
-    /// Changes of a step. Neighbours share the tiles that one left to the other, which are in `known`.
+    /// Changes of a step. Neighbouring steps share tiles, which are in `known`.
     ///
-    /// # Errors
-    /// [`DocumentError::Damaged`] if a page is missing.
+    /// # Errors [`DocumentError::Damaged`] if a page is missing.
     pub(crate) fn changes(
         &self,
         packed: &[u8],

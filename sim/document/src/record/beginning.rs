@@ -52,7 +52,7 @@ struct StoredVersion {
     state: StoredNonTileState,
 }
 
-/// Formats of messages that this program can execute again, that of those that it records first.
+/// Message formats that this program can replay, its own first.
 fn formats() -> Vec<String> {
     let stored = JournalEntry::stored_hashes().into_iter();
     let format = stored.map(|entry| {
@@ -67,7 +67,7 @@ fn checksum(part: &str, value: &str, tiles: &[u8]) -> i64 {
     sum.bytes(value.as_bytes()).bytes(tiles).finish()
 }
 
-/// Writes a beginning, with the pages that are not in the file.
+/// Writes a beginning, with its pages that are not in the file.
 pub(super) fn write(
     writer: &mut Writer<'_, '_>,
     beginning: &Beginning,
@@ -128,10 +128,9 @@ pub(super) fn write(
     Ok(())
 }
 
-/// Reads the beginning of a painting's record; `None` if there is none, or its messages are of another format.
+/// Reads the beginning of a painting's record; `None` without one, or if its messages have another format.
 ///
-/// # Errors
-/// [`DocumentError::Damaged`] if it is not intact.
+/// # Errors [`DocumentError::Damaged`] if it is not intact.
 pub(crate) fn read(
     database: &Database,
     pages: &StoredPages,
@@ -141,7 +140,7 @@ pub(crate) fn read(
         return Ok(None);
     };
     if !formats().contains(&found) {
-        tracing::info!("the record is of another version of this program: it begins anew");
+        tracing::info!("the record is of another version of this program: a new one begins");
         return Ok(None);
     }
     let mut part = |name: &str| {

@@ -6,11 +6,11 @@
 use super::damaged;
 use crate::error::DocumentError;
 
-/// Bytes of index and length before a message.
+/// Size of a message's index and length, bytes.
 #[cfg(test)]
 const HEAD: usize = 12;
 
-/// Bytes of the first message, with its head.
+/// Length of the first message, including its head, bytes.
 #[cfg(test)]
 fn first(messages: &[u8]) -> Result<usize, DocumentError> {
     let head = messages.first_chunk::<HEAD>();

@@ -1,11 +1,12 @@
-//! Messages as columns: a row of the record, before it is compressed.
+//! Messages as columns: a row of the record before compression.
 //!
-//! States of a brush follow each other closely. Taken apart, the numbers of all their solves are one table, the angles of their
-//! joints another, each as the difference to the solve before, and the bytes of a table are sorted by significance: so a row is
-//! a third smaller after compression. What is no state, or would not come back byte for byte, is kept as it is.
+//! States of a brush follow each other closely. The numbers of all their solves form one table, the angles of their
+//! joints another, each as the difference from the solve before, and the bytes of a table are sorted by significance:
+//! this makes a row a third smaller after compression. Messages that are not states, or would not be restored byte for
+//! byte, are stored unchanged.
 //!
-//! Rows of before have groups of messages ([`super::byte_transpose`]) in their place. A row of columns begins with 4 bytes that no
-//! group begins with; then come the columns, each its length in 4 bytes and its bytes.
+//! Older rows have groups of messages ([`super::byte_transpose`]) in their place. A row of columns begins with 4 bytes
+//! that no group begins with; then come the columns, each its length in 4 bytes and its bytes.
 
 use maulstick_types::brush::{BrushState, Contact, Solve};
 use maulstick_types::{Flags, Header, Origin, Pose, decode, encode};
@@ -15,26 +16,27 @@ use crate::error::DocumentError;
 
 /// First bytes of a row of columns: a group of no messages.
 const MARK: [u8; 4] = [0; 4];
-/// Bytes of index and length before a message.
+/// Size of a message's index and length, bytes.
 const PREFIX: usize = 12;
 
-/// Kind of a message that is kept as it is, with its index and length.
+/// Kind of a message stored unchanged, with its index and length.
 const AS_IT_IS: u8 = 0;
 /// Kind of a message that is a brush state.
 const STATE: u8 = 1;
 
-/// Numbers of a state beside its solves, and of a solve beside angles and contacts.
+/// Number of values of a state besides its solves, and of a solve besides angles and contacts.
 const OF_STATE: usize = 11;
 const OF_SOLVE: usize = 14;
 
-/// Columns in the order in which they are written.
+/// Columns in the order of writing.
 #[derive(Default)]
 struct Columns {
     kinds: Vec<u8>,
     whole: Vec<u8>,
-    /// Index; flags, source, epoch, number and times of the header; device, its epoch and sample; number of solves.
+    /// Columns of states: index; flags, source, epoch, number and times of the header; device, its epoch and sample;
+    /// number of solves.
     states: Vec<u8>,
-    /// Time, stroke, surface, flags, bits of pose and zoom, numbers of joints and contacts.
+    /// Columns of solves: time, stroke, surface, flags, bits of pose and zoom, numbers of joints and contacts.
     solves: Vec<u8>,
     /// Bits of two angles a joint.
     angles: Vec<u8>,
@@ -42,10 +44,10 @@ struct Columns {
     contacts: Vec<u8>,
 }
 
-/// Bytes of a value of each column.
+/// Size of a value of each column, bytes.
 const WIDTHS: [usize; 6] = [1, 1, 8 * OF_STATE, 8 * OF_SOLVE, 4, 8];
 
-/// Values to which the next state and solve are differences.
+/// Last values, from which the next state and solve are differences.
 #[derive(Default)]
 struct Before {
     state: [u64; OF_STATE],
@@ -53,10 +55,9 @@ struct Before {
     angles: Vec<u32>,
 }
 
-/// Messages one after the other, each preceded by its index and length, as columns.
+/// Consecutive messages, each preceded by its index and length, as columns.
 ///
-/// # Errors
-/// [`DocumentError::Damaged`] if the last one is torn.
+/// # Errors [`DocumentError::Damaged`] if the last one is torn.
 pub(super) fn columns(messages: &[u8]) -> Result<Vec<u8>, DocumentError> {
     let (mut columns, mut before) = (Columns::default(), Before::default());
     let mut rest = messages;
@@ -135,7 +136,7 @@ pub(super) fn in_order(row: &[u8]) -> Result<Option<Vec<u8>>, DocumentError> {
     }
 }
 
-/// The first message, with its index and length, and what follows it.
+/// The first message, with its index and length, and the rest.
 fn split(messages: &[u8]) -> Result<(&[u8], &[u8]), DocumentError> {
     let length = messages
         .get(8..PREFIX)
@@ -145,7 +146,7 @@ fn split(messages: &[u8]) -> Result<(&[u8], &[u8]), DocumentError> {
     split.ok_or_else(|| damaged("is torn"))
 }
 
-/// Index, header and content of a message that is a state and would come back byte for byte.
+/// Index, header and content of a message that is a state and can be restored byte for byte.
 fn state_of(message: &[u8]) -> Option<(u64, Header, BrushState)> {
     let (index, message) = (message.first_chunk::<8>()?, &message[PREFIX..]);
     let (header, state) = decode::<BrushState>(message).ok()?;
@@ -164,7 +165,7 @@ fn bytes_of(header: &Header, state: &BrushState) -> Option<Vec<u8>> {
     encode(&header.origin(), flags, seq, event_ns, sent_ns, state).ok()
 }
 
-/// Appends numbers as differences to those before.
+/// Appends numbers as differences from those before.
 fn put<const N: usize>(column: &mut Vec<u8>, now: [u64; N], before: &mut [u64; N]) {
     let pairs = now.iter().zip(before.iter());
     column.extend(pairs.flat_map(|(now, before)| now.wrapping_sub(*before).to_le_bytes()));
@@ -245,7 +246,7 @@ impl Columns {
     }
 }
 
-/// Columns, as far as they are not read.
+/// Unread parts of the columns.
 struct Reading<'a> {
     whole: &'a [u8],
     states: &'a [u8],
@@ -398,7 +399,7 @@ mod tests {
         message
     }
 
-    /// A state, or bytes that are none.
+    /// A state, or bytes that are not one.
     fn message() -> impl Strategy<Value = Vec<u8>> {
         let state = (
             any::<[u64; 5]>(),

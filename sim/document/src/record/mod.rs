@@ -1,8 +1,8 @@
-//! The record of a painting: all that was accepted since its beginning, so that it can be executed again.
+//! The record of a painting: all messages accepted since its beginning, for replay.
 //!
-//! The entries that a checkpoint includes move from the journal to the record in the transaction that writes it. Opening
-//! reads the journal and the beginning, and none of the record's messages, so a long record costs no time; it is read row by row
-//! by who executes it again.
+//! The entries that a checkpoint includes move from the journal to the record in the transaction that writes it.
+//! Opening reads the journal and the beginning, and none of the record's messages, so a long record costs no time; a
+//! replay reads it row by row.
 
 pub(crate) mod beginning;
 mod byte_transpose;
@@ -25,24 +25,24 @@ use crate::writing::Writer;
 
 pub use rewind::rewind;
 
-/// zstd's level of a row: a second of painting is some hundred kB, which takes a few ms.
+/// zstd level of a row: a second of painting is some hundred kB, which takes a few ms.
 const LEVEL: i32 = 6;
-/// Bytes of a row before it is compressed, beyond which another begins.
+/// Size of a row before compression above which another begins, bytes.
 const ROW_BYTES: usize = 4 << 20;
 
 /// Messages that were accepted one after the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordRow {
-    /// Time of the wall clock when they were written, ms since 1970; `None` if they are in the journal alone.
+    /// Wall-clock time of writing, ms since 1970; `None` if they are in the journal alone.
     pub time_ms: Option<u64>,
-    /// The messages.
+    /// Messages in order.
     pub records: Vec<Record>,
 }
 
 /// Size and age of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordStats {
-    /// Bytes of its rows.
+    /// Size of its rows, bytes.
     pub bytes: u64,
     /// Time of its beginning, ms since 1970.
     pub begun_ms: u64,
@@ -50,11 +50,10 @@ pub struct RecordStats {
     pub newest_ms: u64,
 }
 
-/// Brings the record up to a checkpoint: `records` are the messages before it that are not in the journal. What the
-/// checkpoint includes leaves the journal.
+/// Advances the record to a checkpoint: `records` are the messages before it that are not in the journal. Messages
+/// included in the checkpoint leave the journal.
 ///
-/// # Errors
-/// The error of SQLite or the compressor.
+/// # Errors The error of SQLite or the compressor.
 pub(crate) fn advance(
     writer: &mut Writer<'_, '_>,
     checkpoint: &Checkpoint,
@@ -76,7 +75,7 @@ pub(crate) fn advance(
     Ok(())
 }
 
-/// Bytes of the record after a checkpoint; beyond any limit where it was lost, so that it begins anew.
+/// Size of the record after a checkpoint, bytes; `u64::MAX` where it was lost, so that a new one begins.
 pub(crate) fn bytes_after(database: &Database, change: &RecordChange) -> u64 {
     let query = "SELECT EXISTS (SELECT 1 FROM beginning)";
     let begun = database.connection.query_row(query, [], |row| row.get(0));
@@ -86,11 +85,10 @@ pub(crate) fn bytes_after(database: &Database, change: &RecordChange) -> u64 {
     }
 }
 
-/// Discards the record of a closed painting, and its tiles as they were displayed: the next one that opens it begins another,
-/// and draws them again.
+/// Discards the record of a closed painting, and its displayed tiles: the next program that opens it begins another
+/// record, and draws the tiles again.
 ///
-/// # Errors
-/// Any [`DocumentError`].
+/// # Errors Any [`DocumentError`].
 pub fn discard(path: &Path) -> Result<(), DocumentError> {
     let (database, _) = Database::open(path, Access::Paint, None)?;
     clear(&database)?;
@@ -117,8 +115,8 @@ fn append(database: &Database, serial: u64, records: &[Record]) -> Result<(), Do
         Ok(is_intact)
     })?;
     if !is_intact {
-        // The painting is at a later state: nothing but its record is lost.
-        tracing::warn!("a row of the journal is damaged: the record begins anew");
+        // The painting is at a later state, so only its record is lost.
+        tracing::warn!("a row of the journal is damaged: a new record begins");
         return clear(database);
     }
     for records in records.chunks(journal::ROW_RECORDS) {
@@ -129,7 +127,7 @@ fn append(database: &Database, serial: u64, records: &[Record]) -> Result<(), Do
     open.end()
 }
 
-/// Row that messages are added to.
+/// Row under construction.
 struct OpenRow<'a> {
     database: &'a Database,
     ends: [u64; 2],
@@ -161,7 +159,7 @@ impl<'a> OpenRow<'a> {
         Ok(())
     }
 
-    /// Writes the row, if there is anything in it.
+    /// Writes the row, unless it is empty.
     fn end(&mut self) -> Result<(), DocumentError> {
         if self.data.is_empty() {
             return Ok(());
@@ -250,10 +248,9 @@ fn damaged(what: &str) -> DocumentError {
     DocumentError::Damaged(format!("the record of what was painted {what}"))
 }
 
-/// Messages from one serial number on, as many as are in a row; `None` if there are none.
+/// Messages from one serial number on, up to the end of a row; `None` if there are none.
 ///
-/// # Errors
-/// [`DocumentError::Damaged`] if they are not intact, or some before them are missing.
+/// # Errors [`DocumentError::Damaged`] if they are not intact, or earlier ones are missing.
 pub(crate) fn row_from(
     database: &Database,
     serial: u64,

@@ -1,4 +1,4 @@
-//! A painting taken back to where its record begins.
+//! Rewinding of a painting to the beginning of its record.
 
 use std::path::Path;
 
@@ -7,12 +7,11 @@ use crate::document::{Document, DocumentSettings};
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database};
 
-/// Takes a closed painting back to where its record begins; false, and the painting as it was, where it has no record that
-/// this program can execute again. What was painted since goes, with its history and the record; an error may leave the
-/// file without its tiles, so it is for a copy.
+/// Rewinds a closed painting to the beginning of its record; false, with the painting unchanged, without a record that
+/// this program can replay. Later paint, history and the record are deleted; an error may leave the file without its
+/// tiles, so use a copy.
 ///
-/// # Errors
-/// Any [`DocumentError`].
+/// # Errors Any [`DocumentError`].
 pub fn rewind(path: &Path) -> Result<bool, DocumentError> {
     let settings = DocumentSettings::new(path, Access::Paint);
     let open = || -> Result<_, DocumentError> {
@@ -26,7 +25,7 @@ pub fn rewind(path: &Path) -> Result<bool, DocumentError> {
     if !has_record {
         return Ok(false);
     }
-    // The checkpoint writes rows, and removes those alone that it knows of.
+    // The checkpoint writes rows, and removes only those that it refers to.
     let (database, _) = Database::open(path, Access::Paint, None)?;
     let query = "BEGIN; DELETE FROM tile; DELETE FROM step; DELETE FROM version; DELETE FROM journal; \
                  DELETE FROM record; DELETE FROM shown; COMMIT";

@@ -1,5 +1,5 @@
-//! Checksums of rows: CRC-32 of the columns' values after the tag, in order: integers as 8 bytes
-//! little endian, texts and blobs as their bytes with their length before them.
+//! Checksums of rows: CRC-32 of the columns' values after the tag, in order: integers as 8 bytes little endian, texts
+//! and blobs as their bytes preceded by their length.
 
 use super::schema::Table;
 
@@ -38,7 +38,7 @@ impl Checksum {
         self
     }
 
-    /// The checksum as its column has it.
+    /// The checksum as the value of its column.
     #[must_use]
     pub fn finish(self) -> i64 {
         i64::from(self.0.finalize())

@@ -1,40 +1,40 @@
 //! Defects of stored bytes.
 
-/// Defect of the bytes of a page or a load. Its words are a predicate, whose subject is the page.
+/// Defect of the bytes of a page or a load. Its text is a predicate, whose subject is the page.
 #[derive(Debug, thiserror::Error)]
 pub enum Defect {
-    /// No bytes of zstd.
+    /// The bytes are not zstd.
     #[error("is not compressed")]
     Uncompressed,
-    /// The compressor says nothing of the size.
+    /// The compressed data lack their size.
     #[error("does not say its size")]
     NoSize,
-    /// More or fewer bytes than its paints can have.
+    /// The size does not fit its paints.
     #[error("has {bytes} bytes instead of {least} to {most}")]
     Size {
-        /// Its bytes.
+        /// Size of the data, bytes.
         bytes: usize,
-        /// The fewest that it can have.
+        /// Least size, bytes.
         least: usize,
-        /// The most.
+        /// Greatest size, bytes.
         most: usize,
     },
     /// Error of the compressor.
     #[error("cannot be decompressed: {0}")]
     Compression(#[from] std::io::Error),
-    /// Other planes than its row says.
-    #[error("has other planes than it says")]
+    /// Other planes than its row lists.
+    #[error("has other planes than its row lists")]
     Planes,
-    /// A count that no cell holds.
+    /// A count above the capacity of a cell.
     #[error("has a count above a cell's maximum in slot {0}")]
     Count(usize),
-    /// A plane of the paint model that is cut off, out of order or of no known shape.
+    /// A plane of the paint model that is truncated, out of order or of an unknown shape.
     #[error("has a torn plane of its paint model")]
     Torn,
     /// A plane of the paint model that is never written.
     #[error("has an empty plane of its paint model")]
     Empty,
-    /// Planes of a load that do not fit together.
+    /// Inconsistent planes of a load.
     #[error("has planes that do not fit together")]
     Load,
 }

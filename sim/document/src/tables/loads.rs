@@ -9,7 +9,7 @@ use maulstick_model::brush::traits::{STRIPS_MOST, TEXELS_PER_STRIP};
 
 use super::defect::Defect;
 
-/// A head has at most this many texels: those of as many strips as a brush may have.
+/// Greatest number of texels of a head, for the greatest number of strips of a brush.
 const TEXELS_MAX: usize = STRIPS_MOST * TEXELS_PER_STRIP;
 
 /// A load as bytes.

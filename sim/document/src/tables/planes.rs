@@ -1,10 +1,10 @@
 //! Count planes as bytes: differences, shuffled by significance, compressed.
 //!
-//! A plane is 64×64 counts, row after row from the bottom. What is compressed is a byte, 1 with planes that the paint
-//! model keeps of its own and 0 without; then, for each slot of the mask from the lowest, the plane's difference to the same plane of an older page, or without one to
-//! the count at its left (the first of a row to the one below it), each as a zigzag number of 32 bits;
-//! of a plane first the low bytes of all differences, then the next ones. Most of these bytes are 0. The model's own
-//! planes follow.
+//! A plane is 64×64 counts, row after row from the bottom. The compressed data begin with a byte, 1 with the paint
+//! model's own planes and 0 without. For each slot of the mask from the lowest, the plane's differences follow, as
+//! zigzag numbers of 32 bits: from the same plane of an older page, or without one from the count at the left (below,
+//! in the first column). A plane has first the low bytes of all differences, then the next ones. Most of these bytes
+//! are 0. The model's own planes follow.
 
 mod own;
 
@@ -20,9 +20,9 @@ use super::defect::Defect;
 // A mask has a bit for each slot.
 const _: () = assert!(SLOTS == u64::BITS as usize);
 
-/// zstd's level while the painter paints: a tile in a fraction of a millisecond.
+/// zstd level while the painter paints: a tile in a fraction of a millisecond.
 pub const LEVEL: i32 = 1;
-/// zstd's level of a packed painting: of strokes 17 leaves 1.2 % less, at a seventieth of the speed.
+/// zstd level of a packed painting: for strokes 17 saves 1.2 % more, at a seventieth of the speed.
 pub const PACKED_LEVEL: i32 = 9;
 
 fn zigzag(difference: i32) -> u32 {
@@ -57,12 +57,12 @@ pub fn mask(planes: &Planes) -> u64 {
     planes.iter().fold(0, |mask, (slot, _)| mask | 1 << slot)
 }
 
-/// Bytes of the counts of the slots of a mask, with the byte before them.
+/// Size of the counts of a mask's slots, including the first byte.
 fn counts_bytes(mask: u64) -> usize {
     1 + mask.count_ones() as usize * TILE_CELLS * 4
 }
 
-/// Bytes of what is compressed, as its head says: no more than the paints of the mask can have.
+/// Size of the uncompressed data by their header, bounded by the paints of the mask.
 fn unpacked_bytes(mask: u64, bytes: &[u8]) -> Result<usize, Defect> {
     let least = counts_bytes(mask);
     let most = least + own::most(mask);
@@ -75,10 +75,9 @@ fn unpacked_bytes(mask: u64, bytes: &[u8]) -> Result<usize, Defect> {
     }
 }
 
-/// Planes as bytes, as a difference to `base` if there is one.
+/// Planes as bytes, as a difference from `base` if there is one.
 ///
-/// # Errors
-/// The error of the compressor.
+/// # Errors The error of the compressor.
 pub fn encode(planes: &Planes, base: Option<&Planes>, level: i32) -> std::io::Result<Vec<u8>> {
     let mut shuffled = vec![0u8; 1 + planes.len() * TILE_CELLS * 4];
     shuffled[0] = u8::from(!planes.own().is_empty());
@@ -101,10 +100,9 @@ pub fn encode(planes: &Planes, base: Option<&Planes>, level: i32) -> std::io::Re
     zstd::bulk::compress(&shuffled, level)
 }
 
-/// Recompresses planes of the slots of `mask` at another level of zstd.
+/// Recompresses planes of the slots of `mask` at another zstd level.
 ///
-/// # Errors
-/// [`Defect`].
+/// # Errors [`Defect`].
 pub fn repack(mask: u64, bytes: &[u8], level: i32) -> Result<Vec<u8>, Defect> {
     let most = unpacked_bytes(mask, bytes)?;
     let shuffled = zstd::bulk::decompress(bytes, most)?;
@@ -123,7 +121,7 @@ pub fn decode(mask: u64, bytes: &[u8], base: Option<&Planes>) -> Result<Planes, 
         let all = zstd::bulk::decompress(bytes, length)?;
         (all, None)
     } else {
-        // Planes of the model's own are read one by one, so that the first that is wrong ends it.
+        // The model's own planes are read one by one, so that reading stops at the first invalid one.
         let mut stream = zstd::stream::read::Decoder::with_buffer(bytes)?;
         let mut all = vec![0; length];
         stream.read_exact(&mut all)?;
@@ -185,7 +183,7 @@ mod tests {
         })
     }
 
-    /// Planes with some of the model's own.
+    /// Planes, some of them the model's own.
     fn planes() -> impl Strategy<Value = Planes> {
         let values = prop_oneof![
             Just(ValueType::U8),

@@ -13,10 +13,10 @@ use maulstick_types::scene::Layer;
 use maulstick_types::wire::worded::Worded as _;
 use serde::{Deserialize, Serialize};
 
-/// Suffix of the keys of the second copy of the state: a single wrong bit in the only copy would cost the painting.
+/// Key suffix of the second copy of the state: a single wrong bit in the only copy would cost the painting.
 pub const COPY: &str = " copy";
 
-/// Name of a step, JSON; rows of before schema 7 have it in words.
+/// Name of a step, JSON; rows before schema 7 have it in words.
 pub(crate) fn step_name(text: &str) -> StepName {
     serde_json::from_str(text).unwrap_or_else(|_| StepName::of_words(text))
 }
@@ -94,8 +94,8 @@ pub fn unpacked<const N: usize>(bytes: &[u8]) -> Option<Vec<[i64; N]>> {
     })
 }
 
-/// Effects of a step besides tiles, as JSON: loads by number, dry layers and surfaces where they changed, each before
-/// and after it, and the paint that it booked.
+/// Effects of a step besides tiles, as JSON: loads by number, dry layers and changed surfaces, each before and after
+/// it, and the booked paint.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StoredStepEffects {
     /// Loads by brush.
@@ -106,7 +106,7 @@ pub struct StoredStepEffects {
     pub layers: Option<[Vec<Layer>; 2]>,
     /// Materials of the surfaces.
     pub materials: Option<[Vec<SurfaceMaterial>; 2]>,
-    /// Most quanta that a cell of a surface ever had.
+    /// Greatest quanta of a cell of each surface so far, before and after.
     pub tops: [BTreeMap<u32, f32>; 2],
 }
 
@@ -115,13 +115,13 @@ pub struct StoredStepEffects {
 pub struct StoredNonTileState {
     /// Loads by brush.
     pub loads: BTreeMap<String, u64>,
-    /// Its ledger.
+    /// Ledger of the version.
     pub ledger: Ledger,
     /// Dry layers.
     pub layers: Vec<Layer>,
     /// Materials of the surfaces.
     pub materials: Vec<SurfaceMaterial>,
-    /// Most quanta that a cell of a surface ever had.
+    /// Greatest quanta of a cell of each surface so far.
     pub tops: BTreeMap<u32, f32>,
 }
 

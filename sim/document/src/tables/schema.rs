@@ -40,7 +40,7 @@ pub enum Table {
     Journal = 9,
     /// Tiles as they are shown.
     Shown = 10,
-    /// The painting where its record begins.
+    /// The painting at the beginning of its record.
     Beginning = 11,
     /// Records accepted from the beginning to the state.
     Record = 12,
@@ -86,8 +86,8 @@ impl Table {
         }
     }
 
-    /// Kinds of the columns between tag and sum: `i` an integer, `t` a text, `b` a blob. An integer that comes
-    /// first is the row's key.
+    /// Kinds of the columns between tag and sum: `i` an integer, `t` a text, `b` a blob. A leading integer is the row's
+    /// key.
     #[must_use]
     pub fn columns(self) -> &'static str {
         match self {
@@ -120,7 +120,7 @@ CREATE TABLE journal(tag INTEGER NOT NULL, id INTEGER PRIMARY KEY, last INTEGER 
 CREATE TABLE shown(tag INTEGER NOT NULL, place INTEGER PRIMARY KEY, version INTEGER NOT NULL, look INTEGER NOT NULL, data BLOB NOT NULL, sum INTEGER NOT NULL);
 ";
 
-/// The tables of the record, which came with schema 5.
+/// Tables of the record, since schema 5.
 const RECORD_TABLES: &str = "
 CREATE TABLE beginning(tag INTEGER NOT NULL, part TEXT PRIMARY KEY, value TEXT NOT NULL, tiles BLOB NOT NULL, sum INTEGER NOT NULL);
 CREATE TABLE record(tag INTEGER NOT NULL, id INTEGER PRIMARY KEY, last INTEGER NOT NULL, time INTEGER NOT NULL, bytes INTEGER NOT NULL, data BLOB NOT NULL, sum INTEGER NOT NULL);
@@ -151,8 +151,7 @@ pub fn is_blank(connection: &Connection) -> Result<bool, DocumentError> {
 
 /// True if a file is another program's database. It is only read.
 ///
-/// # Errors
-/// The error of SQLite.
+/// # Errors The error of SQLite.
 pub fn is_foreign(path: &Path) -> Result<bool, DocumentError> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let connection = connect(path, flags, None)?;
@@ -161,15 +160,13 @@ pub fn is_foreign(path: &Path) -> Result<bool, DocumentError> {
     Ok(application != APPLICATION_ID && !is_blank(&connection)?)
 }
 
-/// Steps from each older schema to the next. The rows of the record of schema 6 are columns, and those of schema 5 stay as
-/// they are. Names of steps and decisions of schema 7 have fields, and those of before stay the words that they are. Edits of
-/// schema 8 have names, and those of before stay numbers.
+/// Migrations from each older schema to the next. Schema 6 stores rows of the record as columns, schema 7 names of
+/// steps and decisions as fields, schema 8 edits by name; older rows stay unchanged.
 const MIGRATIONS: [&str; (VERSION - OLDEST_VERSION) as usize] = [RECORD_TABLES, "", "", ""];
 
-/// Schema of a painting; rejects one of a newer program or of before the oldest schema.
+/// Schema of a painting; rejects one of a newer program or before the oldest schema.
 ///
-/// # Errors
-/// [`DocumentError::Newer`], [`DocumentError::Older`], [`DocumentError::NoPainting`], or what SQLite says.
+/// # Errors [`DocumentError::Newer`], [`DocumentError::Older`], [`DocumentError::NoPainting`], or the error of SQLite.
 pub fn version(connection: &Connection) -> Result<i32, DocumentError> {
     let application: i32 =
         connection.query_row("PRAGMA application_id", params![], |row| row.get(0))?;
@@ -192,9 +189,9 @@ pub fn version(connection: &Connection) -> Result<i32, DocumentError> {
 /// An object of a schema: its type, name, table and statement.
 type Object = [String; 4];
 
-/// Most objects of a schema.
+/// Up to `most` objects of a schema.
 fn objects(connection: &Connection, most: usize) -> Result<BTreeSet<Object>, DocumentError> {
-    // SQLite's own statistics are no statement of anybody.
+    // SQLite's own statistics have no statement.
     let query = "SELECT type, name, tbl_name, coalesce(sql, '') FROM sqlite_schema \
          WHERE NOT (type = 'table' AND name GLOB 'sqlite_stat[14]') LIMIT ?1";
     let mut statement = connection.prepare(query)?;
@@ -203,11 +200,10 @@ fn objects(connection: &Connection, most: usize) -> Result<BTreeSet<Object>, Doc
     Ok(rows.collect::<Result<_, _>>()?)
 }
 
-/// Checks that a painting has the tables and the index that this program makes, and nothing else: a trigger would change
-/// what is written, a view what is read.
+/// Checks that a painting has exactly the tables and the index of this program: a trigger would change the written
+/// data, a view the data read.
 ///
-/// # Errors
-/// [`DocumentError::Altered`] with what differs, or as [`version`].
+/// # Errors [`DocumentError::Altered`] with the difference, or as [`version`].
 pub fn check(connection: &Connection) -> Result<(), DocumentError> {
     let own = Connection::open_in_memory()?;
     own.execute_batch(TABLES)?;
@@ -218,7 +214,7 @@ pub fn check(connection: &Connection) -> Result<(), DocumentError> {
         own.execute_batch(change)?;
     }
     let own = objects(&own, usize::MAX >> 1)?;
-    // One more than there should be is enough to see that there are more.
+    // One extra object suffices to detect a difference.
     let found = objects(connection, own.len() + 1)?;
     let strange = found.difference(&own).next();
     let differs = strange.or_else(|| own.difference(&found).next());
@@ -227,7 +223,7 @@ pub fn check(connection: &Connection) -> Result<(), DocumentError> {
     };
     let known = own.iter().any(|[_, own, ..]| own == name);
     Err(DocumentError::Altered(match (strange, known) {
-        (Some(_), false) => format!("the {kind} '{name}' is none of its own"),
+        (Some(_), false) => format!("the {kind} '{name}' does not belong to a painting"),
         (Some(_), true) => format!("its {kind} '{name}' is another than it was"),
         (None, _) => format!("its {kind} '{name}' is missing"),
     }))

@@ -1,4 +1,4 @@
-//! Failures of the disk: painting continues in memory, the failure is reported, and the operation is tried again.
+//! Failures of the disk: painting continues in memory, the failure is reported, and the operation is repeated.
 
 use std::sync::atomic::Ordering::SeqCst;
 use std::time::{Duration, Instant};
@@ -7,11 +7,11 @@ use super::queues::Life;
 use super::{DocumentThread, RETRY_DELAY};
 use crate::error::DocumentError;
 
-/// Failure of the last write of one kind, and when to retry.
+/// Last failed write of one kind, and the time to retry.
 #[derive(Default)]
 pub(super) struct Retry {
     pub(super) failed: Option<Instant>,
-    /// True if it failed on closing, when nothing is retried.
+    /// True if closing failed, after which nothing is retried.
     pub(super) given_up: bool,
 }
 
@@ -21,13 +21,13 @@ impl Retry {
         self.failed.is_none_or(|when| when.elapsed() >= delay)
     }
 
-    /// True if it may be tried.
+    /// True if it may be tried now.
     pub(super) fn is_due(&self, hurry: bool) -> bool {
         !self.given_up && (hurry || self.has_waited(RETRY_DELAY))
     }
 }
 
-/// Part of the work on the file that fails and is tried again as a whole.
+/// Part of the work on the file that fails and is repeated as a whole.
 #[derive(Clone, Copy)]
 pub(super) enum Part {
     Checkpoint,
@@ -37,7 +37,7 @@ pub(super) enum Part {
 }
 
 impl DocumentThread {
-    /// Notes that this part of the work succeeds.
+    /// Clears the failure of this part.
     pub(super) fn note_written(&mut self, part: Part) {
         let failed = self.retry(part).failed.take().is_some();
         let all = [&self.checkpoint, &self.journal, &self.file, &self.reading];
@@ -55,7 +55,7 @@ impl DocumentThread {
         }
     }
 
-    /// Notes a failure: it is reported, and the operation tried again.
+    /// Records and reports a failure; the operation is repeated.
     pub(super) fn note_failure(&mut self, part: Part, error: &DocumentError) {
         self.shared.fails.store(true, SeqCst);
         let mut queues = self.shared.lock();

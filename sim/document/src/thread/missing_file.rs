@@ -34,7 +34,7 @@ impl DocumentThread {
         let continued = match &state {
             FileState::Cut(_) => self.continue_whole_in(&to, false),
             _ => {
-                // The file may have another name now, or only the journal be gone.
+                // The file may have been renamed, or only the journal be gone.
                 self.database.merge_journal();
                 relocate::rescue(&self.database, &to, false).and_then(|()| self.continue_in(&to))
             }
@@ -42,7 +42,7 @@ impl DocumentThread {
         match continued {
             Ok(()) => {
                 let what = format!(
-                    "{} was {harm}: the painting goes on in {}",
+                    "{} was {harm}: the painting continues in {}",
                     lost.display(),
                     to.display()
                 );
@@ -73,7 +73,7 @@ impl DocumentThread {
         }
     }
 
-    /// Continues in a file with the same content as the previous one, which has no name any more.
+    /// Continues in a file with the content of the previous one, which has no name any more.
     pub(super) fn continue_in(&mut self, path: &Path) -> Result<(), DocumentError> {
         let (database, _) = Database::open(path, Access::Paint, None)?;
         std::mem::replace(&mut self.database, database).abandon();
@@ -88,8 +88,8 @@ impl DocumentThread {
         Ok(())
     }
 
-    /// Continues in a file that begins as the previous one was when its journal was last merged, or as a new one, and wants
-    /// all of the painting: what was in the journal since is in memory alone.
+    /// Continues in a file with the content of the last merge of the previous one, or a new one, and requests the whole
+    /// painting: later records of the journal are in memory alone.
     pub(super) fn continue_whole_in(
         &mut self,
         path: &Path,
@@ -100,7 +100,7 @@ impl DocumentThread {
         }
         self.continue_in(path)?;
         self.shared.lock().wants_all = true;
-        // Pages that are stored are not in this file: they must not leave memory before they are.
+        // Stored pages are not in this file, and must not leave memory before they are.
         self.shared.fails.store(true, SeqCst);
         Ok(())
     }

@@ -32,11 +32,11 @@ use reading::yield_to_readers;
 
 /// Longest time until an accepted record is in the file.
 const COMMIT_PERIOD: Duration = Duration::from_millis(100);
-/// Longest time for the first checkpoint of a painting that was in memory alone, which is one transaction.
+/// Longest duration of the first checkpoint of a painting that was in memory alone, which is one transaction.
 const FIRST_CHECKPOINT: Duration = Duration::from_secs(3600);
 /// Delay before a failed write is retried.
 const RETRY_DELAY: Duration = Duration::from_secs(1);
-/// The same of a failed read.
+/// Delay before a failed read is retried.
 const REREAD_DELAY: Duration = Duration::from_millis(100);
 /// Largest number of displayed tiles in one transaction.
 const SHOWN_BATCH: usize = 128;
@@ -45,7 +45,6 @@ const SHOWN_BATCH: usize = 128;
 pub(crate) struct DocumentThread {
     shared: Arc<Shared>,
     database: Database,
-    /// The painting's file.
     path: PathBuf,
     writes: bool,
     content: Content,
@@ -59,19 +58,19 @@ pub(crate) struct DocumentThread {
     journal: Retry,
     file: Retry,
     reading: Retry,
-    /// Pages of the painting as it is that were not read yet: they are, while there is nothing else to do, so that a disk that
-    /// fails later is painted on.
+    /// Unread pages of the current painting, which are read in idle time, so that painting can continue on a disk that
+    /// fails later.
     to_read_ahead: Vec<Page<Planes>>,
 }
 
-/// What is in the file.
+/// Content of the file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Content {
-    /// Nothing of the painting: its first checkpoint is written completely or not at all.
+    /// None of the painting: its first checkpoint is written completely or not at all.
     Nothing,
-    /// Checkpoints of which some need SQLite's journal beside the file.
+    /// Checkpoints, some of which are in SQLite's journal beside the file.
     Unmerged,
-    /// A checkpoint that is read without that journal.
+    /// A checkpoint that can be read without the journal.
     Merged,
 }
 
@@ -82,14 +81,14 @@ enum Work {
     Shown(Vec<ShownTile>),
     Commit(Vec<Record>),
     Relocate(RelocateRequest),
-    /// Page that nobody waits for.
+    /// Page without a waiting reader.
     Read(Page<Planes>),
     /// Check of the files alone.
     CheckFiles,
     Close,
 }
 
-/// Rows that the writer of a checkpoint takes to be in the file; `None` if the checkpoint is superfluous.
+/// Rows that the writer of a checkpoint assumes to be in the file; `None` if the checkpoint is superfluous.
 fn trust_for(checkpoint: &Checkpoint, queues: &mut Queues) -> Option<Trust> {
     if !queues.wants_all {
         Some(Trust::Stored)
@@ -103,7 +102,7 @@ fn trust_for(checkpoint: &Checkpoint, queues: &mut Queues) -> Option<Trust> {
 }
 
 impl DocumentThread {
-    /// Thread for a file that has the tile versions up to `saved_version`; without `writes` it only reads.
+    /// Thread for a file with the tile versions up to `saved_version`; without `writes` it only reads.
     pub(crate) fn new(
         shared: Arc<Shared>,
         (database, path): (Database, &Path),
@@ -128,7 +127,7 @@ impl DocumentThread {
         }
     }
 
-    /// Reads these pages while there is nothing else to do.
+    /// Reads these pages in idle time.
     pub(crate) fn reading_ahead(self, to_read_ahead: Vec<Page<Planes>>) -> Self {
         Self {
             to_read_ahead,
@@ -136,7 +135,7 @@ impl DocumentThread {
         }
     }
 
-    /// Thread for a painting of which nothing is in the file yet.
+    /// Thread for a painting that is not in the file yet.
     pub(crate) fn for_first_checkpoint(self) -> Self {
         Self {
             content: Content::Nothing,
@@ -191,7 +190,7 @@ impl DocumentThread {
         if left && !fault.is_empty() {
             Err(DocumentError::Unwritten(fault))
         } else if wants_all {
-            // The parts that the file lacks were in memory alone.
+            // The missing parts were in memory alone.
             Err(DocumentError::Incomplete(self.path))
         } else {
             Ok(())
@@ -253,11 +252,11 @@ impl DocumentThread {
         }
     }
 
-    /// The most urgent write, if any is due.
+    /// The most urgent write that is due.
     fn next_write(&mut self, queues: &mut Queues, closing: bool) -> Option<Work> {
         let hurry = closing || !queues.flushes.is_empty() || !queues.relocations.is_empty();
         let due = hurry || self.last_commit.elapsed() >= COMMIT_PERIOD;
-        // A file that lacks a part of the painting gets all of it, and before that nothing else.
+        // A file that lacks a part of the painting first gets all of it.
         let is_whole = !queues.wants_all;
         let commits = is_whole && due && self.journal.is_due(hurry) && !queues.records.is_empty();
         // A checkpoint includes the records, but needs more room on the disk than they do.
@@ -270,8 +269,8 @@ impl DocumentThread {
             queues.writing = true;
             return Some(Work::Checkpoint(Box::new(checkpoint)));
         }
-        // New records come all the time while somebody paints: one commit is enough. A file that lacks a part of the
-        // painting takes none, and is not relocated: that is said at once.
+        // New records arrive all the time during painting, so one commit suffices. A file that lacks a part of the
+        // painting takes none, and is not relocated, which is answered at once.
         if (queues.records.is_empty() || self.committed_for_relocation || !is_whole)
             && let Some(request) = queues.relocations.pop()
         {
@@ -356,7 +355,7 @@ impl DocumentThread {
                 queues.wants_all = false;
                 stored.mark();
                 self.saved_version = checkpoint.painting.kept.versions;
-                // The next look is at the next checkpoint.
+                // It is read again at the next checkpoint.
                 self.shared.record_bytes.store(
                     record::bytes_after(&self.database, &checkpoint.record),
                     SeqCst,

@@ -34,7 +34,6 @@ pub(crate) enum Fetch {
 /// State of the document's thread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Life {
-    /// Serving.
     #[default]
     Open,
     /// Writing the data handed over before it ends.
@@ -47,16 +46,16 @@ pub(crate) enum Life {
 #[derive(Default)]
 pub(crate) struct Queues {
     pub(crate) fetches: Vec<Fetch>,
-    /// Pages that could not be read for a fault that may pass, and since when: they are tried again.
+    /// Pages that could not be read because of a temporary fault, with the time of the failure, to be retried.
     pub(crate) failed_fetches: Vec<(Fetch, Instant)>,
-    /// Those of them whose turn has come.
+    /// Retries that are due.
     pub(crate) retried: Vec<(Fetch, Instant)>,
     pub(crate) records: Vec<Record>,
     pub(crate) checkpoint: Option<Checkpoint>,
     pub(crate) shown: BTreeMap<i64, ShownTile>,
     /// True while a checkpoint is written. If that fails, it is written again before any later one.
     pub(crate) writing: bool,
-    /// True if the file lacks parts of the painting, as after its journal was cut short: it is to be handed over as a whole.
+    /// True if the file lacks parts of the painting, as after its journal was cut short, and needs the whole painting.
     pub(crate) wants_all: bool,
     /// Threads that wait until everything handed over is written, or writing has failed.
     pub(crate) flushes: Vec<mpsc::Sender<()>>,
@@ -65,9 +64,9 @@ pub(crate) struct Queues {
     pub(crate) life: Life,
     /// Error that makes the painting in memory unreliable: a page could not be read. Nothing is written any more.
     pub(crate) broken: Option<String>,
-    /// Why nothing is written at present, with advice.
+    /// The reason why nothing is written at present, with advice.
     pub(crate) fault: Option<(String, Advice)>,
-    /// Notice about the file, with advice, although everything is written.
+    /// Notice about the file, with advice, while everything is written.
     pub(crate) notice: Option<(NoticeKind, String, Advice)>,
     /// File in which the painting continues after its own was removed.
     pub(crate) moved_to: Option<PathBuf>,
@@ -83,7 +82,7 @@ pub(crate) enum NoticeKind {
 }
 
 impl Queues {
-    /// The fault in words; empty without one.
+    /// Text of the fault; empty without one.
     pub(crate) fn fault_text(&self) -> String {
         let fault = self.fault.as_ref();
         fault.map_or(String::new(), |(what, _)| what.clone())
@@ -96,8 +95,8 @@ pub(crate) struct Shared {
     pub(crate) queues: Mutex<Queues>,
     pub(crate) wake: Condvar,
     pub(crate) committed: AtomicU64,
-    /// True while what was stored may not be read back, as where the disk fails or the file lacks parts of the painting: no page
-    /// leaves memory.
+    /// True while stored pages may be unreadable, because the disk fails or the file lacks parts of the painting: then
+    /// no page leaves memory.
     pub(crate) fails: AtomicBool,
     /// Bytes of the record.
     pub(crate) record_bytes: AtomicU64,
@@ -179,19 +178,19 @@ impl DocumentBacking {
         let read = read.unwrap_or_else(|| Err(DocumentError::Other(CLOSED.to_owned())));
         match read {
             Ok(content) => Ok(Box::new(content)),
-            // The page's own words are enough for who needs it.
+            // The page's own error suffices.
             Err(DocumentError::Damaged(what)) => Err(PageError::Storage(what.into())),
             Err(error) => Err(PageError::Storage(error.into())),
         }
     }
 }
 
-/// Cache of tiles as they are displayed, kept in the document.
+/// Cache of displayed tiles in the document.
 #[derive(Clone)]
 pub struct TileCache(pub(crate) Arc<Shared>);
 
 impl TileCache {
-    /// Planes of a tile as it is displayed under a look, if the document has them.
+    /// Planes of a tile displayed under a look, if the document has them.
     #[must_use]
     pub fn get(&self, place: i64, version: u64, look: i64) -> Option<Vec<u8>> {
         let bytes = self

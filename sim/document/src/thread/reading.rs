@@ -1,4 +1,4 @@
-//! Reading of pages that somebody waits for.
+//! Reading of pages for waiting readers.
 
 use std::sync::atomic::Ordering::SeqCst;
 use std::sync::mpsc::Sender;
@@ -14,7 +14,7 @@ use crate::error::DocumentError;
 use crate::file::database::Database;
 use crate::record;
 
-/// Longest time for which a page is tried again that the disk does not give: who waits for it stands still meanwhile.
+/// Longest time of retrying a page that the disk cannot read: its reader stands still meanwhile.
 const PATIENCE: Duration = Duration::from_secs(15);
 
 /// Processor time of this thread.
@@ -28,7 +28,7 @@ impl DocumentThread {
     /// Reads the pages that readers wait for, and reports a fault of the disk.
     pub(super) fn read_pages(&mut self) {
         let served = serve_fetches(&self.shared, &self.database);
-        // Those that failed before may still wait while others are read.
+        // Earlier failures may still wait while others are read.
         let is_done = self.shared.lock().failed_fetches.is_empty();
         match served {
             Ok(()) if is_done => self.note_written(Part::Reading),
@@ -39,7 +39,7 @@ impl DocumentThread {
 }
 
 impl DocumentThread {
-    /// Reads a page that nobody waits for, as long as half of the memory is free. An error is left to the reader that needs the page.
+    /// Reads a page without a waiting reader, while half of the memory is free. An error is left to its next reader.
     pub(super) fn read_ahead(&mut self, page: &Page<Planes>) {
         let counts = page.pager().counts();
         if counts.resident >= counts.bound / 2 {
@@ -54,7 +54,7 @@ impl DocumentThread {
     }
 }
 
-/// Notes that the painting in memory is unreliable: a page of it is not intact, or the disk did not give it in time.
+/// Records that the painting in memory is unreliable: a page is not intact, or the disk did not return it in time.
 fn note_broken(shared: &Shared, error: &DocumentError) {
     let what = match error {
         DocumentError::Damaged(what) => what.clone(),
@@ -66,7 +66,7 @@ fn note_broken(shared: &Shared, error: &DocumentError) {
     queues.broken = Some(what);
 }
 
-/// Content of a page, or an answer that says why there is none; `None` where it is to be tried again.
+/// Content of a page, or the error; `None` if it is to be retried.
 fn answered<T>(
     shared: &Shared,
     read: Result<T, DocumentError>,
@@ -87,8 +87,8 @@ fn answered<T>(
     Some(())
 }
 
-/// The error of the disk, where that is why something is said to be damaged. Once the painting is known to be broken, nothing
-/// depends on it any more, and the file, which may be long, is not read through again.
+/// The error, or the disk's where that is the cause of apparent damage. Once the painting is known to be broken, the
+/// file, which may be long, is not read through again.
 fn judged(shared: &Shared, database: &Database, error: DocumentError) -> DocumentError {
     let is_broken = shared.lock().broken.is_some();
     if is_broken {
@@ -98,10 +98,9 @@ fn judged(shared: &Shared, database: &Database, error: DocumentError) -> Documen
     }
 }
 
-/// Reads the pages that readers wait for. One that the disk does not give is kept to be tried again.
+/// Reads the pages that readers wait for. A page that the disk cannot read is kept for a retry.
 ///
-/// # Errors
-/// The fault of the disk.
+/// # Errors The fault of the disk.
 fn serve_fetches(shared: &Shared, database: &Database) -> Result<(), DocumentError> {
     let now = Instant::now();
     let fetches = {
@@ -148,7 +147,7 @@ fn serve_fetches(shared: &Shared, database: &Database) -> Result<(), DocumentErr
     failure.map_or(Ok(()), Err)
 }
 
-/// The same in the midst of a transaction, whose own reads tell a fault of the disk.
+/// Serves readers within a transaction, whose own reads detect a fault of the disk.
 pub(super) fn yield_to_readers(shared: &Shared, database: &Database) {
     if let Err(error) = serve_fetches(shared, database) {
         tracing::debug!("a page is not read: {error}");

@@ -8,7 +8,7 @@ use crate::file::database::{Access, Database, is_new};
 use crate::file::relocate::{self, Relocate, RelocateRequest};
 use crate::file::watch::{FileState, FileWatch};
 
-/// The file at a path; SQLite would create a blank one where there is none.
+/// The file at a path; SQLite would create a blank one where it is absent.
 fn open(path: &Path) -> Result<Database, DocumentError> {
     if is_new(path)? {
         return Err(DocumentError::Missing);
@@ -39,9 +39,9 @@ impl DocumentThread {
             request.answer.send(rescued).ok();
             return Ok(self);
         }
-        // An error now would come when it is closed, and then it could not be opened again.
+        // An error now would appear when it is closed, and then it could not be opened again.
         match self.database.try_merge_journal() {
-            // It is closed with its journal then, and refused.
+            // It is then closed with its journal, and refused.
             Ok(()) | Err(DocumentError::Full) => {}
             Err(error) => {
                 let error = self.database.judged(error);
@@ -80,8 +80,9 @@ impl DocumentThread {
         Ok(self)
     }
 
-    /// The answer where the file lacks a part of the painting; `None` if it has all of it. Such a painting is not relocated. But
-    /// one that was cut short, and got no other file beside it, continues at the new path, and wants all of the painting there.
+    /// The answer for a file that lacks a part of the painting; `None` if it is complete. Such a painting is not
+    /// relocated. But one that was cut short, without another file beside it, continues at the new path, and requests
+    /// the whole painting there.
     fn answer_of_a_part(
         &mut self,
         state: &FileState,

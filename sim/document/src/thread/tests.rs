@@ -1,5 +1,4 @@
-//! The document's thread step by step: what it says of pages that cannot be read and of a file that is lost, and what stays in
-//! memory then.
+//! The document's thread step by step: reports of unreadable pages and of a lost file, and the pages kept in memory.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, mpsc};
@@ -13,7 +12,7 @@ use super::queues::{DocumentBacking, EndGuard, Fetch};
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database};
 
-/// The thread of a new painting, which is run by hand.
+/// The thread of a new painting, run by hand.
 fn thread_at(path: &Path) -> DocumentThread {
     let (database, _) = Database::open(path, Access::Paint, None).expect("begun");
     DocumentThread::new(Arc::default(), (database, path), true, 0)
@@ -54,7 +53,7 @@ fn a_fault_lasts_as_long_as_a_page_waits_that_could_not_be_read() {
 fn a_page_is_tried_again_whatever_keeps_it_from_being_read() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut thread = thread_at(&folder.path().join("sea.maul"));
-    // SQLite says so with an error of its own, which is neither of the disk nor of damage.
+    // SQLite reports a separate error, neither of the disk nor of damage.
     let away = thread.database.connection.execute_batch("DROP TABLE page");
     away.expect("dropped");
     let (answer, reader) = mpsc::channel();
@@ -73,7 +72,7 @@ fn a_painting_that_is_known_to_be_broken_is_not_read_through_for_each_page() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("sea.maul");
     let mut thread = thread_at(&path);
-    // A folder in its place fails whoever reads the journal through.
+    // A folder in its place makes reading the journal fail.
     std::fs::remove_file(journal(&path)).expect("removed");
     std::fs::create_dir(journal(&path)).expect("made");
     let (answer, reader) = mpsc::channel();
@@ -104,7 +103,7 @@ fn no_page_leaves_memory_while_the_file_lacks_a_part_of_the_painting() {
     thread.check_files(false);
     assert!(thread.shared.lock().wants_all);
     assert!(!may_leave(&thread));
-    // What succeeds besides does not make it whole.
+    // Other successes do not make it whole.
     thread.note_written(Part::Reading);
     assert!(!may_leave(&thread));
     thread.shared.lock().wants_all = false;

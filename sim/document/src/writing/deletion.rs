@@ -1,4 +1,4 @@
-//! Deletion of pages, layers and loads that nothing refers to any more.
+//! Deletion of unreferenced pages, layers and loads.
 
 use std::collections::BTreeSet;
 

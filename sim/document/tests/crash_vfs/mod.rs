@@ -1,12 +1,12 @@
-//! What a power cut leaves of a database: a VFS that writes down what SQLite does to its files, and
-//! the files as they may stand after a power cut at any point of that.
+//! Databases after a power cut: a VFS that logs SQLite's operations on its files, and the possible files after a power
+//! cut at any point of the log.
 //!
-//! Of each file everything before its last sync is there, and deletions before the directory's. Of
-//! what came since, any part may be: each write is there, is not, or is there in some of its sectors
-//! of 512 bytes; truncations and deletions are there or not. That some writes are missing and later ones are not is the same as
-//! their having been reordered. Bytes beside a write are never hurt, which is what SQLite's
-//! `SQLITE_IOCAP_POWERSAFE_OVERWRITE` supposes and the unix VFS promises. Sources: "Atomic Commit In
-//! SQLite", <https://sqlite.org/atomiccommit.html>, section 2; "How SQLite Is Tested", section 3.3.
+//! Everything before a file's last sync survives, and deletions before the directory's. Any part of the later
+//! operations may survive: each write entirely, not at all, or in some of its sectors of 512 bytes; truncations and
+//! deletions entirely or not at all. A missing write before a surviving one is equivalent to reordering. Bytes beside a
+//! write are never damaged, which is the assumption of SQLite's `SQLITE_IOCAP_POWERSAFE_OVERWRITE` and the promise of
+//! the unix VFS. Sources: "Atomic Commit In SQLite", <https://sqlite.org/atomiccommit.html>, section 2; "How SQLite Is
+//! Tested", section 3.3.
 
 #![allow(
     dead_code,
@@ -34,29 +34,29 @@ pub(crate) enum FileKind {
     Journal,
 }
 
-/// What SQLite did to a file.
+/// An operation of SQLite on a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Deed {
+pub(crate) enum FileOperation {
     Write {
         offset: u64,
         bytes: Vec<u8>,
     },
-    /// To so many bytes.
+    /// Truncation to a number of bytes.
     Truncate(u64),
     Sync,
     Delete,
-    /// The directory is synced: the deletions of all its files so far.
+    /// The directory is synced: all deletions of its files so far.
     SyncDirectory,
 }
 
-/// A deed and the file it was done to.
+/// An operation and its file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Op {
     pub(crate) file: FileKind,
-    pub(crate) deed: Deed,
+    pub(crate) operation: FileOperation,
 }
 
-/// What SQLite did to the files of one database, in order, over any number of connections.
+/// SQLite's operations on the files of one database, in order, over any number of connections.
 #[derive(Debug, Clone)]
 pub(crate) struct Log(Arc<Mutex<Recorded>>);
 
@@ -67,21 +67,20 @@ struct Recorded {
     refused: Refused,
 }
 
-/// What is refused of a database's main file.
+/// Refused operations on a database's main file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Refused {
     Nothing,
     /// Writes, as where the disk is full.
     Writes,
-    /// To be opened.
     Opening,
-    /// What is read, of the main file and its log.
+    /// Reads of the main file and its log.
     Reads,
-    /// All that is read, written, cut or synced, of the main file and its log: a disk that fails.
+    /// All reads, writes, truncations and syncs of the main file and its log: a failing disk.
     Everything,
 }
 
-/// The files of a database; none for one that is not there.
+/// Files of a database; `None` for an absent one.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Image {
     pub(crate) main: Vec<u8>,
@@ -89,10 +88,9 @@ pub(crate) struct Image {
     pub(crate) journal: Option<Vec<u8>>,
 }
 
-/// Logs what SQLite does to the database at `main` in connections that are opened through the VFS
-/// [`VFS`]. What stands there already counts as synced. The VFS offers no shared memory for a database
-/// that is watched, so a WAL needs `locking_mode = EXCLUSIVE` before it; one that nobody watches has
-/// the default VFS's files.
+/// Logs SQLite's operations on the database at `main` in connections opened through the VFS [`VFS`]. Its current
+/// contents count as synced. The VFS offers no shared memory for a watched database, so a WAL needs `locking_mode =
+/// EXCLUSIVE` before it; an unwatched one uses the default VFS's files.
 pub(crate) fn watch(main: &Path) -> Log {
     shim::register(shim::Rank::Named);
     let log = Log(Arc::new(Mutex::new(Recorded {
@@ -104,20 +102,20 @@ pub(crate) fn watch(main: &Path) -> Log {
     log
 }
 
-/// As [`watch`], and from now on every connection of this process that names no VFS goes through
-/// [`VFS`]: for code that opens its databases itself.
+/// [`watch`], with [`VFS`] for every later connection of this process that names no VFS: for code that opens its
+/// databases itself.
 pub(crate) fn watch_by_default(main: &Path) -> Log {
     shim::register(shim::Rank::Default);
     watch(main)
 }
 
 impl Log {
-    /// The point after the latest operation: how many there have been.
+    /// Number of operations so far.
     pub(crate) fn point(&self) -> usize {
         self.recorded().ops.len()
     }
 
-    /// Refuses this from now on.
+    /// Refuses these operations from now on.
     pub(crate) fn refuse(&self, refused: Refused) {
         self.recorded().refused = refused;
     }
@@ -133,23 +131,22 @@ impl Log {
         self.recorded().ops.clone()
     }
 
-    /// The files as a power cut after the first `point` operations may leave them. `random` decides
-    /// how much of what was not synced is there: nothing, everything, or each operation by a coin of
-    /// some bias.
+    /// Possible files after a power cut after the first `point` operations. `random` decides about the unsynced ones:
+    /// none, all, or each by a coin of some bias.
     pub(crate) fn image(&self, random: &mut impl Rng, point: usize) -> Image {
         self.image_with(random, point, |_| true)
     }
 
-    /// As [`image`](Self::image), of a disk that does not sync when it is told to.
+    /// [`image`](Self::image) of a disk that does not sync when requested.
     pub(crate) fn image_of_a_liar(&self, random: &mut impl Rng, point: usize) -> Image {
-        self.image_with(random, point, |deed| *deed != Deed::Sync)
+        self.image_with(random, point, |operation| *operation != FileOperation::Sync)
     }
 
     fn image_with(
         &self,
         random: &mut impl Rng,
         point: usize,
-        is_done: impl Fn(&Deed) -> bool,
+        is_done: impl Fn(&FileOperation) -> bool,
     ) -> Image {
         let recorded = self.recorded();
         let start = recorded.start.clone();
@@ -158,16 +155,17 @@ impl Log {
                 .ops
                 .iter()
                 .take(point)
-                .filter(|op| is_done(&op.deed));
-            let ops = ops.filter(|op| op.file == kind || op.deed == Deed::SyncDirectory);
-            (content, ops.map(|op| &op.deed).collect::<Vec<_>>())
+                .filter(|op| is_done(&op.operation));
+            let ops =
+                ops.filter(|op| op.file == kind || op.operation == FileOperation::SyncDirectory);
+            (content, ops.map(|op| &op.operation).collect::<Vec<_>>())
         };
         let [main, wal, journal] = [
             file(FileKind::Main, Some(start.main)),
             file(FileKind::Wal, start.wal),
             file(FileKind::Journal, start.journal),
         ]
-        .map(|(content, deeds)| cut(random, content, &deeds));
+        .map(|(content, operations)| cut(random, content, &operations));
         Image {
             main: main.unwrap_or_default(),
             wal,
@@ -179,13 +177,13 @@ impl Log {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn note(&self, file: FileKind, deed: Deed) {
-        self.recorded().ops.push(Op { file, deed });
+    fn note(&self, file: FileKind, operation: FileOperation) {
+        self.recorded().ops.push(Op { file, operation });
     }
 }
 
 impl Image {
-    /// Writes the files into `dir`, the main file as `name`; those of an earlier image go.
+    /// Writes the files into `dir`, the main file as `name`; those of an earlier image are removed.
     pub(crate) fn write_to(&self, dir: &Path, name: &str) {
         std::fs::write(dir.join(name), &self.main).expect("the main file is written");
         for (suffix, bytes) in [("-wal", &self.wal), ("-journal", &self.journal)] {
@@ -213,40 +211,50 @@ impl Image {
     }
 }
 
-/// A file with `content` after `deeds` and a power cut.
-fn cut(random: &mut impl Rng, content: Option<Vec<u8>>, deeds: &[&Deed]) -> Option<Vec<u8>> {
-    let last = |deed: &Deed, deeds: &[&Deed]| deeds.iter().rposition(|other| *other == deed);
-    let synced = last(&Deed::Sync, deeds);
-    let directory = last(&Deed::SyncDirectory, deeds).unwrap_or(0);
-    let deleted = last(&Deed::Delete, &deeds[..directory]);
+/// A file with `content` after `operations` and a power cut.
+fn cut(
+    random: &mut impl Rng,
+    content: Option<Vec<u8>>,
+    operations: &[&FileOperation],
+) -> Option<Vec<u8>> {
+    let last = |operation: &FileOperation, operations: &[&FileOperation]| {
+        operations.iter().rposition(|other| *other == operation)
+    };
+    let synced = last(&FileOperation::Sync, operations);
+    let directory = last(&FileOperation::SyncDirectory, operations).unwrap_or(0);
+    let deleted = last(&FileOperation::Delete, &operations[..directory]);
     let settled = synced.max(deleted).map_or(0, |last| last + 1);
-    let (settled, since) = deeds.split_at(settled);
+    let (settled, since) = operations.split_at(settled);
     let mut content = content;
-    for deed in settled {
-        apply(&mut content, deed, |_| true);
+    for operation in settled {
+        apply(&mut content, operation, |_| true);
     }
     let bias = [0, 1, 2, 3, 4][random.next_u32() as usize % 5];
-    for deed in since {
+    for operation in since {
         let mut coin = || random.next_u32() % 4 < bias;
         let is_there = coin();
-        match deed {
-            Deed::Write { .. } if random.next_u32().is_multiple_of(4) => {
+        match operation {
+            FileOperation::Write { .. } if random.next_u32().is_multiple_of(4) => {
                 let mut coin = || random.next_u32() % 4 < bias;
-                apply(&mut content, deed, |_| coin());
+                apply(&mut content, operation, |_| coin());
             }
-            // The name still stands for the old file: what went to a new one is lost with it.
-            Deed::Delete if !is_there => break,
-            _ if is_there => apply(&mut content, deed, |_| true),
+            // The name still refers to the old file: data in a new one are lost with it.
+            FileOperation::Delete if !is_there => break,
+            _ if is_there => apply(&mut content, operation, |_| true),
             _ => {}
         }
     }
     content
 }
 
-/// Does `deed` to a file, a write only in the sectors for which `sector` says so.
-fn apply(content: &mut Option<Vec<u8>>, deed: &Deed, mut sector: impl FnMut(usize) -> bool) {
-    match deed {
-        Deed::Write { offset, bytes } => {
+/// Applies an operation to a file; of a write only the sectors selected by `sector`.
+fn apply(
+    content: &mut Option<Vec<u8>>,
+    operation: &FileOperation,
+    mut sector: impl FnMut(usize) -> bool,
+) {
+    match operation {
+        FileOperation::Write { offset, bytes } => {
             let file = content.get_or_insert_default();
             let mut at = usize::try_from(*offset).expect("a test's file is small");
             let mut rest = bytes.as_slice();
@@ -262,11 +270,11 @@ fn apply(content: &mut Option<Vec<u8>>, deed: &Deed, mut sector: impl FnMut(usiz
                 rest = beyond;
             }
         }
-        Deed::Truncate(length) => {
+        FileOperation::Truncate(length) => {
             let length = usize::try_from(*length).expect("a test's file is small");
             content.get_or_insert_default().resize(length, 0);
         }
-        Deed::Sync | Deed::SyncDirectory => {}
-        Deed::Delete => *content = None,
+        FileOperation::Sync | FileOperation::SyncDirectory => {}
+        FileOperation::Delete => *content = None,
     }
 }

@@ -1,5 +1,5 @@
-//! The VFS itself: hands everything on to the default one and logs what changes a file. "The SQLite
-//! OS Interface or VFS", <https://sqlite.org/vfs.html>.
+//! The VFS itself: it passes everything to the default one and logs changes of files. "The SQLite OS Interface or VFS",
+//! <https://sqlite.org/vfs.html>.
 
 #![allow(
     unsafe_code,
@@ -13,7 +13,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use rusqlite::ffi;
 
-use super::{Deed, FileKind, Log, Refused};
+use super::{FileKind, FileOperation, Log, Refused};
 
 /// The VFS's name.
 pub(super) const NAME: &CStr = c"crash";
@@ -21,7 +21,7 @@ pub(super) const NAME: &CStr = c"crash";
 /// The main files that are watched.
 static WATCHED: Mutex<Vec<(PathBuf, Log)>> = Mutex::new(Vec::new());
 
-/// Whether connections that name no VFS get this one.
+/// Rank of the VFS among those of connections that name none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Rank {
     Named,
@@ -39,8 +39,8 @@ struct CrashFile {
 struct Watched {
     file: FileKind,
     log: Log,
-    /// Whether the unix VFS syncs the directory, too, with the next sync: it does with the first of
-    /// each log or journal that it opens (`UNIXFILE_DIRSYNC` in SQLite's `os_unix.c`).
+    /// True if the unix VFS also syncs the directory with the next sync: it does with the first of each log or journal
+    /// that it opens (`UNIXFILE_DIRSYNC` in SQLite's `os_unix.c`).
     syncs_directory: bool,
 }
 
@@ -76,7 +76,7 @@ static METHODS: ffi::sqlite3_io_methods = ffi::sqlite3_io_methods {
     xUnfetch: None,
 };
 
-/// Registers the VFS, again with another rank if need be.
+/// Registers the VFS, again with another rank if necessary.
 pub(super) fn register(rank: Rank) {
     static VFS: OnceLock<Vfs> = OnceLock::new();
     let mut is_new = false;
@@ -106,7 +106,7 @@ pub(super) fn register(rank: Rank) {
     }
 }
 
-/// Logs what is done to the database at `main` from now on into `log`.
+/// Logs later operations on the database at `main` into `log`.
 pub(super) fn watch(main: &Path, log: &Log) {
     let name = main.file_name().expect("a file's name");
     let dir = main.parent().filter(|dir| !dir.as_os_str().is_empty());
@@ -117,7 +117,7 @@ pub(super) fn watch(main: &Path, log: &Log) {
     watched.push((main, log.clone()));
 }
 
-/// Who watches the file that SQLite calls `name`.
+/// Watcher of the file that SQLite calls `name`.
 ///
 /// # Safety
 /// `name` is null or a string.
@@ -153,19 +153,24 @@ unsafe fn inner(file: *mut ffi::sqlite3_file) -> *mut ffi::sqlite3_file {
     unsafe { file.cast::<CrashFile>().add(1).cast() }
 }
 
-/// Writes down what was done to `file`, if it was done.
+/// Logs an operation on `file`, if it succeeded.
 ///
 /// # Safety
 /// `file` was opened by [`open`].
-unsafe fn note(file: *mut ffi::sqlite3_file, code: c_int, deed: impl FnOnce() -> Deed) {
+unsafe fn note(
+    file: *mut ffi::sqlite3_file,
+    code: c_int,
+    operation: impl FnOnce() -> FileOperation,
+) {
     // SAFETY: `watched` is a box that lives until `close`.
     let watched = unsafe { (*file.cast::<CrashFile>()).watched.as_mut() };
     if let (ffi::SQLITE_OK, Some(watched)) = (code, watched) {
-        let deed = deed();
-        let syncs_directory = deed == Deed::Sync && std::mem::take(&mut watched.syncs_directory);
-        watched.log.note(watched.file, deed);
+        let operation = operation();
+        let syncs_directory =
+            operation == FileOperation::Sync && std::mem::take(&mut watched.syncs_directory);
+        watched.log.note(watched.file, operation);
         if syncs_directory {
-            watched.log.note(watched.file, Deed::SyncDirectory);
+            watched.log.note(watched.file, FileOperation::SyncDirectory);
         }
     }
 }
@@ -218,9 +223,9 @@ unsafe extern "C" fn delete(
         };
         let code = base_delete(base, name, sync_dir);
         if let (ffi::SQLITE_OK, Some(watched)) = (code, watched(name)) {
-            watched.log.note(watched.file, Deed::Delete);
+            watched.log.note(watched.file, FileOperation::Delete);
             if sync_dir != 0 {
-                watched.log.note(watched.file, Deed::SyncDirectory);
+                watched.log.note(watched.file, FileOperation::SyncDirectory);
             }
         }
         code
@@ -323,7 +328,7 @@ unsafe extern "C" fn write(
     let code = base!(file, xWrite, buffer, bytes, offset);
     // SAFETY: SQLite gives `bytes` bytes at `buffer`.
     unsafe {
-        note(file, code, || Deed::Write {
+        note(file, code, || FileOperation::Write {
             offset: offset.cast_unsigned(),
             bytes: std::slice::from_raw_parts(buffer.cast(), bytes.cast_unsigned() as usize)
                 .to_vec(),
@@ -339,7 +344,7 @@ unsafe extern "C" fn truncate(file: *mut ffi::sqlite3_file, size: ffi::sqlite3_i
     }
     let code = base!(file, xTruncate, size);
     // SAFETY: the file is open.
-    unsafe { note(file, code, || Deed::Truncate(size.cast_unsigned())) };
+    unsafe { note(file, code, || FileOperation::Truncate(size.cast_unsigned())) };
     code
 }
 
@@ -350,6 +355,6 @@ unsafe extern "C" fn sync(file: *mut ffi::sqlite3_file, flags: c_int) -> c_int {
     }
     let code = base!(file, xSync, flags);
     // SAFETY: the file is open.
-    unsafe { note(file, code, || Deed::Sync) };
+    unsafe { note(file, code, || FileOperation::Sync) };
     code
 }

@@ -1,4 +1,4 @@
-//! A painting in a document, kept as the paint node keeps it.
+//! A painting in a document, handled like in the paint node.
 
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
@@ -28,16 +28,15 @@ impl Easel {
             sequencer: kept,
             since: 0,
         };
-        easel.hand_over();
+        easel.save_to_document();
         equip(&mut easel.sequencer);
         easel.record();
         easel
     }
 
-    /// Goes on with a painting.
+    /// Continues a painting.
     ///
-    /// # Errors
-    /// What is wrong with it.
+    /// # Errors The fault of the file.
     pub fn open(settings: &DocumentSettings) -> Result<Self, String> {
         let (document, opened) = Document::open(settings).map_err(|error| error.to_string())?;
         let opened = opened.ok_or("there is no painting in it")?;
@@ -58,7 +57,7 @@ impl Easel {
         self.document.record(self.sequencer.take_records());
     }
 
-    fn hand_over(&mut self) {
+    fn save_to_document(&mut self) {
         if self.document.wants_all() {
             self.sequencer.painting_mut().tell_all_again();
             self.since = 0;
@@ -76,7 +75,7 @@ impl Easel {
     /// Hands a checkpoint over, if the last one is written.
     pub fn checkpoint(&mut self) {
         if self.document.is_ready() {
-            self.hand_over();
+            self.save_to_document();
         }
     }
 
@@ -85,7 +84,7 @@ impl Easel {
         assert_eq!(self.document.fault(), None);
     }
 
-    /// Undoes all that can be; returns how many steps that were.
+    /// Undoes all possible steps; returns their number.
     pub fn undo_all(&mut self) -> usize {
         let mut steps = 0;
         while self.sequencer.edit(Undo { brush: None }).is_ok() {
@@ -100,10 +99,10 @@ impl Easel {
         self.try_close().expect("closed");
     }
 
-    /// The same; the fault of a file that cannot be written.
+    /// Writes all as a checkpoint and closes the file; returns the fault of an unwritable one.
     pub fn try_close(mut self) -> Result<(), String> {
         self.document.flush();
-        self.hand_over();
+        self.save_to_document();
         self.document.flush();
         match self.document.fault() {
             Some((what, _)) => Err(what),

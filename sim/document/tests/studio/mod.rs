@@ -1,4 +1,4 @@
-//! A painter who does anything at all, from a seed.
+//! A painter with random actions from a seed.
 
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
@@ -35,7 +35,7 @@ const MIXTURES: [&str; 3] = [
 /// Cells of the canvas: more than a tile, and not a multiple of it.
 const CELLS: [u32; 2] = [150, 100];
 
-/// So many cases, or as many as `PROPTEST_CASES` asks for.
+/// Number of cases, or that in `PROPTEST_CASES`.
 pub fn cases(usual: u32) -> ProptestConfig {
     let asked = std::env::var("PROPTEST_CASES").ok();
     let asked = asked.and_then(|cases| cases.parse().ok());
@@ -60,7 +60,7 @@ pub fn sequencer(pager: Arc<Pager>) -> Sequencer {
     sequencer_of("impasto", pager)
 }
 
-/// The same with this paint model on its canvas.
+/// A new painting with this paint model on its canvas.
 pub fn sequencer_of(model: &str, pager: Arc<Pager>) -> Sequencer {
     let setup = PaintingSetup {
         cells: CELLS,
@@ -98,7 +98,7 @@ impl Dice {
     }
 }
 
-/// What the painter does next.
+/// Next action of the painter.
 #[derive(Clone, Debug)]
 pub enum Act {
     Paint(usize, bool, Vec<Solve>),
@@ -272,7 +272,7 @@ impl Painter {
                 ..Dry::whole(CANVAS)
             }),
             52..54 => Command::from(Wet {
-                // None is all.
+                // 0 means all.
                 layers: Some(self.dice.below(3) as u32).filter(|count| *count > 0),
                 region: self.region(),
                 surface: CANVAS,
@@ -315,7 +315,7 @@ impl Painter {
         Act::Command(command)
     }
 
-    /// Does an act; what cannot be done is refused, as it is to any painter.
+    /// Does an action; an impossible one is refused, as for any painter.
     pub fn act(&mut self, sequencer: &mut Sequencer, act: &Act) {
         match act {
             Act::Paint(b, _, solves) => {
@@ -365,7 +365,7 @@ impl Painter {
     }
 }
 
-/// All that lies on a tile, in words of numbers.
+/// Contents of a tile as numbers.
 pub fn content(held: &TileRef) -> Vec<u64> {
     let Some(tile) = held else { return Vec::new() };
     let mut words = Vec::new();
@@ -390,7 +390,7 @@ pub fn content(held: &TileRef) -> Vec<u64> {
     words
 }
 
-/// What lies on every tile with paint.
+/// Contents of every painted tile.
 pub fn tiles(sequencer: &mut Sequencer) -> BTreeMap<TilePlace, Vec<u64>> {
     let painting = sequencer.painting_mut();
     painting.commit();
@@ -405,14 +405,14 @@ pub fn tiles(sequencer: &mut Sequencer) -> BTreeMap<TilePlace, Vec<u64>> {
     tiles
 }
 
-/// All that a painting is, so that two of them can be compared.
+/// Complete state of a painting, for comparisons.
 pub fn print(sequencer: &mut Sequencer) -> Vec<String> {
     let painting = sequencer.painting_mut();
     let report = painting.report();
     assert_eq!(report.quanta_missing, 0, "the books balance");
     let mut lines = vec![
         format!("{report:?}"),
-        // What undo does not bring back.
+        // State that undo does not restore.
         format!("{:?} {:?}", painting.history_depth(), painting.clock()),
     ];
     let mut scene = painting.scene().clone();

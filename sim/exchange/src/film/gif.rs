@@ -1,4 +1,4 @@
-//! Films as GIF: each frame holds what has changed, with a palette of its own.
+//! Films as GIF: each frame contains the changes, with its own palette.
 
 use std::borrow::Cow;
 use std::io::{Error, Write};
@@ -7,13 +7,13 @@ use gif::{DisposalMethod, Encoder, Frame, Repeat};
 
 use super::palette::Palette;
 
-/// A film that is written as a GIF.
+/// Writer of a film as a GIF.
 pub struct GifFilm<W: Write> {
     encoder: Encoder<W>,
     size: [usize; 2],
     /// The newest frame, sRGB.
     shown: Vec<[u8; 3]>,
-    /// Changed part of the newest frame, until its time is known.
+    /// Changed part of the newest frame, until its duration is known.
     waiting: Option<Frame<'static>>,
 }
 
@@ -25,10 +25,9 @@ fn failed(error: gif::EncodingError) -> Error {
 }
 
 impl<W: Write> GifFilm<W> {
-    /// A film of frames of `size` pixels, across and down, which begins again at its end.
+    /// A film of frames of `size` pixels, across and down, which repeats.
     ///
-    /// # Errors
-    /// The error of `to`, or for more than 65,535 pixels either way.
+    /// # Errors The error of `to`, or for more than 65,535 pixels either way.
     pub fn new(to: W, size: [usize; 2]) -> Result<Self, Error> {
         let [width, height] = [u16::try_from(size[0]), u16::try_from(size[1])];
         let (width, height) = (width.map_err(Error::other)?, height.map_err(Error::other)?);
@@ -42,10 +41,9 @@ impl<W: Write> GifFilm<W> {
         })
     }
 
-    /// Shows a frame, sRGB, for a time, 1/100 s.
+    /// Adds a frame, sRGB, with its duration, 1/100 s.
     ///
-    /// # Errors
-    /// The error of the file.
+    /// # Errors The error of the file.
     pub fn add(&mut self, rgb: &[u8], time: u16) -> Result<(), Error> {
         let (pixels, _) = rgb.as_chunks::<3>();
         if self.shown == pixels
@@ -63,7 +61,7 @@ impl<W: Write> GifFilm<W> {
         Ok(())
     }
 
-    /// The least rectangle in which a frame differs from the one that is shown.
+    /// The smallest rectangle in which a frame differs from the current one.
     fn changed(&self, pixels: &[[u8; 3]]) -> Frame<'static> {
         let [width, height] = self.size;
         let is_new = |x: usize, y: usize| {

@@ -1,4 +1,4 @@
-//! Films of a painting: frames of its canvas under its lamp, made small by the mean of their linear light.
+//! Films of a painting: frames of its canvas under its lamp, reduced by averaging linear light.
 
 mod gif;
 mod palette;
@@ -19,10 +19,10 @@ use maulstick_types::scene::CANVAS;
 
 use reduction::Reduction;
 
-/// Values on which the look of all cells depends: print of the look, lamp, names of ground and tooth, seed.
+/// Values on which the appearance of all cells depends: hash of the look, lamp, names of ground and tooth, seed.
 type Look = (i64, Lamp, [String; 2], u64);
 
-/// A canvas that is drawn small again and again; only rows of tiles that have changed are drawn anew.
+/// A canvas that is drawn repeatedly at a small size; only changed rows of tiles are redrawn.
 #[derive(Debug)]
 pub struct Film {
     reduction: Reduction,
@@ -30,10 +30,10 @@ pub struct Film {
     bands: Vec<DrawnBand>,
 }
 
-/// A row of tiles as it was drawn last.
+/// Last drawing of a row of tiles.
 #[derive(Clone, Debug, Default)]
 struct DrawnBand {
-    /// Numbers of the tile versions that it shows, and of the rows beside it, whose relief casts shadows on it.
+    /// Tile version numbers of this row and of its neighbours, whose relief casts shadows on it.
     versions: Vec<u64>,
     /// Its first row of the frame.
     first: usize,
@@ -41,8 +41,8 @@ struct DrawnBand {
     light: Vec<[f32; 3]>,
 }
 
-/// Size of a canvas in the frames of a film, pixels: `width` across, with the proportions of the
-/// canvas, and never larger than it. Encoders of video take even sizes alone.
+/// Size of a canvas in the frames of a film, pixels: `width` across, with the proportions of the canvas, and never
+/// larger than it. Encoders of video require even sizes.
 #[must_use]
 pub fn frame_size(cells: [usize; 2], width: usize, is_even: bool) -> [usize; 2] {
     let across = cells[0].max(1);
@@ -67,7 +67,7 @@ impl Film {
         }
     }
 
-    /// The canvas as it is now, in sRGB; `None` if it has other cells than the film.
+    /// The current canvas, in sRGB; `None` if it has other cells than the film.
     pub fn frame(&mut self, painting: &mut Painting) -> Option<Picture> {
         painting.commit();
         let scene = painting.scene();
@@ -168,7 +168,7 @@ mod tests {
             let frame = film.frame(painting).expect("a frame");
             let alone = Film::new([200, 150], [80, 60]).frame(painting);
             assert!(alone.is_some_and(|alone| alone == frame));
-            // A pixel a cell is the picture, but for what 16 bits round otherwise.
+            // A pixel a cell is the picture, except for rounding to 16 bits.
             let near = whole.frame(painting).expect("a frame");
             let picture = picture(painting, CANVAS);
             let apart = near.rgb.iter().zip(&picture.rgb);

@@ -1,28 +1,27 @@
 //! Palettes of 256 colours, and pictures in their colours.
 //!
-//! Colours that a palette lacks are mixed of four by four pixels of others by Knoll's pattern dithering (US patent
-//! 6606166, expired): what a pixel becomes depends on its colour and its place alone, so what does not move does not
-//! flicker.
+//! Colours that a palette lacks are mixed from four by four pixels of others by Knoll's pattern dithering (US patent
+//! 6606166, expired): the result depends on a pixel's colour and place alone, so still parts do not flicker.
 
 use std::collections::BTreeMap;
 
 use color_quant::NeuQuant;
 
-/// Colours of a palette.
+/// Number of colours of a palette.
 const COLOURS: usize = 256;
-/// Pixels of the picture for one that a palette is learnt from, for large pictures.
+/// Greatest number of pixels from which a palette is computed.
 const SAMPLES: usize = 1 << 16;
-/// Order in which the cells of a pattern take its colours, from dark to light (Bayer 1973).
+/// Order in which the cells of a pattern receive its colours, from dark to light (Bayer 1973).
 const PATTERN: [[usize; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
 /// Share of the error that a colour of a pattern is corrected by.
 const CORRECTION: f32 = 0.7;
-/// Bits of a channel by which nearest colours are found.
+/// Bits of a channel in the table of nearest colours.
 const BITS: u32 = 6;
 
-/// A palette, and what is nearest in it.
+/// A palette, with a table of nearest colours.
 pub(super) struct Palette {
     colours: Vec<[u8; 3]>,
-    /// Place of each colour, where the palette has all of the picture.
+    /// Index of each colour, where the palette has all colours of the picture.
     exact: Option<BTreeMap<[u8; 3], u8>>,
     /// The nearest colour by the first bits of each channel; found on demand.
     nearest: Vec<Option<u8>>,
@@ -68,12 +67,12 @@ impl Palette {
         }
     }
 
-    /// Its colours, red, green, blue.
+    /// Its colours as red, green, blue.
     pub(super) fn bytes(&self) -> Vec<u8> {
         self.colours.as_flattened().to_vec()
     }
 
-    /// Place in the palette of the pixel at a place of the picture.
+    /// Palette index for the pixel at a place of the picture.
     pub(super) fn place(&mut self, pixel: [u8; 3], [x, y]: [usize; 2]) -> u8 {
         if let Some(exact) = &self.exact {
             return exact.get(&pixel).copied().unwrap_or(0);
@@ -157,7 +156,7 @@ mod tests {
                 nearest_alone += off(plain) / 256.0;
             }
         }
-        // Corners of the ramp lie outside of all that a palette can mix.
+        // Corners of the ramp are outside of all mixtures of a palette.
         println!("means of blocks are off by {mixed:.2}, without dithering by {nearest_alone:.2}");
         assert!(mixed < 0.8 * nearest_alone, "{mixed} {nearest_alone}");
     }

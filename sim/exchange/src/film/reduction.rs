@@ -1,8 +1,8 @@
-//! Pictures made small: each pixel is the mean of the linear light of the area that it covers.
+//! Reduced pictures: each pixel is the mean of the linear light of its area.
 
 use maulstick_optics::colour::srgb_decode;
 
-/// The parts of pixels that a cell covers along one side: number of the pixel, and the share of it.
+/// Pixels covered by a cell along one side: index of the pixel, and the share of it.
 type Cover = Vec<(usize, f32)>;
 
 /// Reduction of a picture from one size to another.
@@ -30,8 +30,8 @@ impl Reduction {
         }
     }
 
-    /// What rows of cells from the row `top` on give to the light of the pixels: the first row of pixels, and the linear
-    /// light of it and of those after it. The rows are of sRGB of 16 bits, the higher byte first.
+    /// Contribution of rows of cells from the row `top` on to the light of the pixels: the first row of pixels, and the
+    /// linear light of it and of those after it. The rows are sRGB of 16 bits, the higher byte first.
     pub(super) fn light(&self, top: usize, rows: &[u8]) -> (usize, Vec<[f32; 3]>) {
         let [columns, lines] = &self.covers;
         let width = self.size[0];
@@ -61,7 +61,7 @@ impl Reduction {
     }
 }
 
-/// For each of `from` cells along a side, what it covers of `to` pixels.
+/// For each of `from` cells along a side, its cover of `to` pixels.
 fn covers(from: usize, to: usize) -> Vec<Cover> {
     let edge = |cell: usize| (cell * to) as f64 / from.max(1) as f64;
     let cover = |cell: usize| {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use maulstick_types::scene::PaintSlot;
 
-/// Letters of a paint's name at most: a channel's name has 255 bytes.
+/// Greatest length of a paint's name, letters: a channel's name has 255 bytes.
 const NAME_MAX: usize = 200;
 
 /// Content of a channel.
@@ -12,7 +12,6 @@ const NAME_MAX: usize = 200;
 pub(super) enum Source {
     /// Red, green or blue.
     Colour(usize),
-    /// Height.
     Height,
     /// Wet paint of a slot.
     Wet(usize),
@@ -37,8 +36,8 @@ pub(super) fn channels(paints: &[PaintSlot]) -> Vec<(String, Source)> {
     channels
 }
 
-/// Names of letters, digits, `-` and `_` alone, for a dot would begin another layer; of two that come
-/// out the same the later one gets a number.
+/// Names of letters, digits, `-` and `_` alone, because a dot would begin another layer; of two equal results the later
+/// one gets a number.
 fn safe_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut taken = BTreeSet::new();
     let safe = |c: char| match c {

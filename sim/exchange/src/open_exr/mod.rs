@@ -1,4 +1,4 @@
-//! A painting in numbers, as an OpenEXR file: colour, height, and how much of each paint there is.
+//! A painting in numbers, as an OpenEXR file: colour, height, and the thickness of each paint.
 //!
 //! | channel | holds |
 //! | --- | --- |
@@ -6,9 +6,8 @@
 //! | `height` | m above the highest peaks of the bare ground |
 //! | `wet.<paint>`, `dry.<paint>` | thickness of that paint alone, m |
 //!
-//! All are 32-bit floats, a pixel a cell, from the top row, in blocks of 16 lines packed by ZIP. A
-//! thickness is a count of quanta times [`QUANTUM_M`], and gives that count back where it is less than
-//! 15 mm.
+//! All are 32-bit floats, a pixel a cell, from the top row, in blocks of 16 lines packed by ZIP. A thickness is a count
+//! of quanta times [`QUANTUM_M`], from which the count can be recovered below 15 mm.
 
 mod channels;
 mod rows;
@@ -34,7 +33,7 @@ use self::rows::Rows;
 use crate::ExchangeError;
 use crate::surface::{Progress, Steps, banded, check_whole};
 
-/// Lines of a block.
+/// Number of lines of a block.
 const BLOCK: usize = 16;
 /// Chromaticities of sRGB: red, green, blue, white (IEC 61966-2-1).
 const SRGB: [Vec2<f32>; 4] = [
@@ -49,10 +48,9 @@ const COMMENTS: &str = "R, G, B: linear colour before light, without the surface
     height: metres above the highest peaks of the bare ground. \
     wet.*, dry.*: thickness of each paint in metres.";
 
-/// Writes a surface as an OpenEXR file, from the start of `to`; where it is left is not its end.
+/// Writes a surface as an OpenEXR file, from the start of `to`; the final position is not its end.
 ///
-/// # Errors
-/// [`ExchangeError`].
+/// # Errors [`ExchangeError`].
 pub fn write_open_exr(
     painting: &mut Painting,
     surface: u32,
@@ -104,7 +102,7 @@ pub fn write_open_exr(
 fn header(size: [usize; 2], cell_m: f64, channels: &[(String, Source)]) -> Header {
     let text = |text: &str| Text::from_slice_unchecked(text.as_bytes());
     let list = channels.iter().map(|(name, source)| {
-        // Channels whose ratios a program that packs with loss should keep.
+        // Channels whose ratios a lossy packer should preserve.
         let linear = !matches!(source, Source::Colour(_));
         ChannelDescription::new(text(name), SampleType::F32, linear)
     });

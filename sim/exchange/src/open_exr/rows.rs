@@ -11,18 +11,18 @@ use maulstick_types::paint::TILE;
 
 use super::channels::Source;
 
-/// Bytes of a sample.
+/// Size of a sample, bytes.
 const SAMPLE: usize = size_of::<f32>();
 
-/// Red, green, blue and height of a band, row after row from its lowest.
+/// Red, green, blue and height of a band, row by row from its lowest.
 type Shown = [Vec<f32>; 4];
 
-/// Rows as the file has them: line after line, channel after channel.
+/// Rows in the layout of the file: line by line, channel by channel.
 pub(super) struct Rows<'a> {
     banded: &'a Banded<'a>,
-    /// Where each channel of [`Shown`] is among all channels.
+    /// Index of each channel of [`Shown`] among all channels.
     shown: [usize; 4],
-    /// Where the wet and the dry paint of each slot is.
+    /// Indices of the wet and the dry paint of each slot.
     wet: [usize; SLOTS],
     dry: [usize; SLOTS],
     channels: usize,
@@ -95,7 +95,7 @@ impl<'a> Rows<'a> {
         bytes
     }
 
-    /// Puts the paint of these rows of a tile, counted from the surface's lowest.
+    /// Writes the paint of these rows of a tile, counted from the surface's lowest.
     fn put_paint(&self, (id, tile): (TileId, &Tile), rows: Range<usize>, block: &mut Block<'_>) {
         let lowest = id.y as usize * TILE;
         let cells = (rows.start - lowest) * TILE..(rows.end - lowest) * TILE;
@@ -144,7 +144,7 @@ struct Block<'a> {
 }
 
 impl Block<'_> {
-    /// Puts samples of a channel into a row, from column `left` on.
+    /// Writes samples of a channel into a row, from column `left` on.
     fn put(&mut self, channel: usize, row: usize, left: usize, values: impl Iterator<Item = f32>) {
         let at = ((self.top - row) * self.channels + channel) * self.width + left;
         let bytes = self.bytes[at * SAMPLE..].chunks_exact_mut(SAMPLE);

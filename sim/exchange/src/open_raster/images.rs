@@ -1,4 +1,4 @@
-//! The pictures in an OpenRaster file: each is of the painting up to one of its layers.
+//! Pictures in an OpenRaster file, each of the painting up to one of its layers.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -12,27 +12,24 @@ use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::Layer;
 
-/// Bytes of a pixel with and without its opacity.
+/// Size of a pixel with and without its opacity, bytes.
 const RGBA: usize = 4;
 const RGB: usize = 3;
 
 /// Content of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shows {
-    /// The bare ground.
     Ground,
-    /// The last layer to dry, of the painting up to the dry layer of this number.
+    /// The newest layer of the painting up to the dry layer of this number.
     Dry(u32),
-    /// The wet paint.
     Wet,
-    /// All of it.
     Merged,
 }
 
 /// A picture of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Image {
-    /// As painters call it; none for what is no layer.
+    /// Name of the layer for painters; `None` if it is not a layer.
     pub(super) layer: Option<String>,
     pub(super) file: String,
     pub(super) shows: Shows,
@@ -48,7 +45,7 @@ impl Image {
     }
 }
 
-/// The layers of a surface from the lowest, and the whole of it; `layers` names what has dried.
+/// The layers of a surface from the lowest, and the whole of it; `layers` has the names of the dry ones.
 pub(super) fn images(banded: &Banded<'_>, layers: &[Layer]) -> Vec<Image> {
     let (mut dried, mut wet) = (BTreeSet::new(), false);
     for (_, version) in banded.store().iter() {
@@ -84,7 +81,7 @@ pub(super) fn images(banded: &Banded<'_>, layers: &[Layer]) -> Vec<Image> {
     images
 }
 
-/// Cells that hold any paint.
+/// True for cells with any paint.
 fn painted(planes: &Planes) -> Vec<bool> {
     let mut any = vec![false; TILE_CELLS];
     for (_, plane) in planes {
@@ -149,7 +146,7 @@ pub(super) fn draw(drawing: &Drawing<'_>, images: &[Image], band: usize) -> Vec<
     bands
 }
 
-/// Copies the pixels of a tile to where there is any paint.
+/// Copies the pixels of a tile where there is any paint.
 fn cut(banded: &Banded<'_>, id: TileId, any: Option<&[bool]>, (opaque, band): (&[u8], &mut [u8])) {
     let [across, rows] = banded.within(id);
     let (width, left) = (banded.cells()[0], id.x as usize * TILE);

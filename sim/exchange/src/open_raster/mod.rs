@@ -1,9 +1,9 @@
 //! A painting in layers, as an OpenRaster file (openraster.org, baseline 0.0.5).
 //!
-//! From the bottom: the ground; each dry layer; the wet paint. A layer is the flat colour of the
-//! painting up to it, opaque where it has any paint and clear elsewhere. So the layers over each other
-//! are the painting without light on its relief, and those from the bottom up to any of them are what
-//! it was before the next was laid: colours of glazes are in the glazes, not in how layers are mixed.
+//! From the bottom: the ground; each dry layer; the wet paint. A layer is the flat colour of the painting up to it,
+//! opaque where it has any paint and clear elsewhere. So all layers together are the painting without light on its
+//! relief, and those up to any of them are its state before the next: colours of glazes are in the glazes, not in the
+//! blending of layers.
 
 mod images;
 
@@ -127,7 +127,7 @@ fn pack(
     Ok(files)
 }
 
-/// Adds a file as it is: pictures are packed already. It is as old as the format.
+/// Adds a file uncompressed, because pictures are packed already, with the format's date.
 fn add<W: Write + Seek>(
     file: &mut ZipWriter<W>,
     name: &str,

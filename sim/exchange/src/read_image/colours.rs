@@ -35,7 +35,7 @@ pub(super) struct Range {
 }
 
 impl Range {
-    /// All numbers.
+    /// The full range of numbers.
     pub(super) const FULL: Self = Self {
         black: 0.0,
         white: 65_535.0,
@@ -45,7 +45,7 @@ impl Range {
 /// Conversion of a picture's colours to linear sRGB.
 pub(super) struct Colours {
     profile: Option<Incoming>,
-    /// Light of each number, 0 to 65,535; of what a profile makes of it where there is one.
+    /// Light of each number, 0 to 65,535; for a profile, of its converted numbers.
     light: Vec<f32>,
     /// From that light to sRGB's, where it is not sRGB's.
     to_srgb: Option<[[f32; 3]; 3]>,
@@ -72,7 +72,7 @@ impl Colours {
             return Err(unused(format!("it has more than {most} MB")));
         }
         let profile = Incoming::read(icc).map_err(|error| unused(error.to_string()))?;
-        // One of RGB is right for grey, too.
+        // An RGB profile is right for grey, too.
         if profile.channels() == 1 && channels != 1 {
             return Err(unused("it is one for grey".to_owned()));
         }

@@ -24,7 +24,7 @@ const NUMBER: usize = size_of::<f32>();
 struct Frame {
     /// Pixels across and down.
     size: [usize; 2],
-    /// Where the layer's first pixel lies in it.
+    /// Place of the layer's first pixel in the picture.
     first: [i64; 2],
     /// Numbers of a pixel.
     channels: usize,
@@ -51,7 +51,7 @@ impl Frame {
         vec![0.0; self.size[0] * self.size[1] * self.channels]
     }
 
-    /// Puts a pixel of the layer where it is seen, if it is.
+    /// Writes a pixel of the layer, if it is in the picture.
     fn put(&self, into: &mut [f32], at: Vec2<usize>, pixel: &[f32]) {
         let place = |at: usize, i: usize| {
             let place = usize::try_from(self.first[i] + at as i64).ok()?;

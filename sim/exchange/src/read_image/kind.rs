@@ -5,22 +5,22 @@ use std::path::Path;
 /// A kind of picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureKind {
-    /// PNG.
+    /// Portable Network Graphics.
     Png,
-    /// JPEG.
+    /// JPEG with 8 bits.
     Jpeg,
     /// TIFF, BigTIFF too.
     Tiff,
-    /// OpenEXR.
+    /// OpenEXR, linear light.
     Exr,
     /// OpenRaster: the whole picture in it.
     Ora,
 }
 
-/// As many first bytes as tell any kind.
+/// Number of first bytes that identify any kind.
 pub const HEAD: usize = 64;
 
-/// Kinds by what their files begin with.
+/// First bytes of the files of each kind.
 const MAGIC: [(&[u8], PictureKind); 7] = [
     (b"\x89PNG\r\n\x1a\n", PictureKind::Png),
     (b"\xff\xd8\xff", PictureKind::Jpeg),
@@ -30,7 +30,7 @@ const MAGIC: [(&[u8], PictureKind); 7] = [
     (b"MM\0+", PictureKind::Tiff),
     (b"\x76\x2f\x31\x01", PictureKind::Exr),
 ];
-/// An archive, and what the first file in it says that it is (openraster.org, *File layout*).
+/// An archive, whose first file has its type (openraster.org, *File layout*).
 const ARCHIVE: &[u8] = b"PK\x03\x04";
 const OPEN_RASTER: &[u8] = b"mimetypeimage/openraster";
 
@@ -38,7 +38,7 @@ impl PictureKind {
     /// Endings of pictures' names, in lower case.
     pub const ENDINGS: [&'static str; 7] = ["png", "jpg", "jpeg", "tif", "tiff", "exr", "ora"];
 
-    /// The kind of a file that begins so; [`HEAD`] bytes tell any.
+    /// The kind of a file by its first bytes; [`HEAD`] bytes suffice.
     #[must_use]
     pub fn of(head: &[u8]) -> Option<Self> {
         let mut parts = head.windows(OPEN_RASTER.len());

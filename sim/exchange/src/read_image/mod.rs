@@ -1,9 +1,9 @@
-//! Pictures from files: PNG, JPEG, TIFF, OpenEXR and OpenRaster, whatever is made of them.
+//! Pictures from files: PNG, JPEG, TIFF, OpenEXR and OpenRaster.
 //!
-//! A picture stays in memory as its file has it, at most 8 bytes a pixel (16 for one of floats), and
-//! its rows are converted one at a time. Its colours are what the file says that they are: by a profile
-//! of grey or of RGB, by the marks of PNG, by chromaticities; without any they are those of sRGB.
-//! Transparent pixels lie over white. A picture with a pixel that is no number is rejected.
+//! A picture stays in memory in the form of its file, at most 8 bytes a pixel (16 for one of floats), and its rows are
+//! converted one at a time. Its colours follow the file's profile of grey or of RGB, the marks of PNG, or
+//! chromaticities; without any they are sRGB. Transparent pixels lie over white. A picture with a NaN pixel is
+//! rejected.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -65,18 +65,16 @@ impl Samples {
 }
 
 impl Image {
-    /// Reads a file; what is in it is seen by its first bytes, not by its name.
+    /// Reads a file; its kind is determined by its first bytes, not by its name.
     ///
-    /// # Errors
-    /// [`ImportError`] where it is no picture, or one larger than [`MOST_SIDE`].
+    /// # Errors [`ImportError`] where it is no picture, or one larger than [`MOST_SIDE`].
     pub fn open(path: &Path) -> Result<Self, ImportError> {
         Self::decode(BufReader::new(File::open(path).map_err(ImportError::File)?))
     }
 
-    /// The same with a limit on the bytes that a decoder takes.
+    /// [`open`](Self::open) with a limit on the decoder's memory, bytes.
     ///
-    /// # Errors
-    /// As [`open`](Self::open), and where it would take more.
+    /// # Errors As [`open`](Self::open), and where it would exceed the limit.
     pub fn open_within(path: &Path, bytes: u64) -> Result<Self, ImportError> {
         let file = BufReader::new(File::open(path).map_err(ImportError::File)?);
         Self::decode_within(file, bytes)

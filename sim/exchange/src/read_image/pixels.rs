@@ -11,7 +11,7 @@ use crate::import_error::{ImportError, MOST_SIDE};
 pub(super) enum Alpha {
     /// Colours are as if the pixel were opaque.
     Straight,
-    /// They were multiplied by it (*associated*, *premultiplied*).
+    /// Colours that were multiplied by it (*associated*, *premultiplied*).
     Associated,
 }
 
@@ -29,7 +29,7 @@ pub(super) struct Picture {
 pub(super) enum Numbers {
     Bytes(Vec<u8>),
     Words(Vec<u16>),
-    /// Light.
+    /// Linear light.
     Floats(Vec<f32>),
 }
 
@@ -76,10 +76,9 @@ fn of<P: Pixel>(
     ImageBuffer::from_raw(width, height, values)
 }
 
-/// Sees, before memory is taken for it, that a picture is not too large.
+/// Checks the size of a picture before memory is allocated for it.
 ///
-/// # Errors
-/// [`ImportError`] where it is, or where it has no pixels.
+/// # Errors [`ImportError`] where it is too large, or has no pixels.
 pub(super) fn check_size(
     [width, height]: [u32; 2],
     bytes_per_pixel: usize,

@@ -23,7 +23,7 @@ pub(super) fn read(
 ) -> Result<Picture, ImportError> {
     let marks = marks(&mut source).map_err(ImportError::File)?;
     source.rewind().map_err(ImportError::File)?;
-    // The decoder counts what it unpacks beside the pixels, above all the profile.
+    // The decoder counts the data that it unpacks beside the pixels, above all the profile.
     let limits = Limits {
         bytes: MOST_PROFILE,
     };
@@ -78,7 +78,7 @@ fn colour_channels(pixels: &DynamicImage) -> usize {
 /// Chunks that say something of colours.
 const MARKS: [[u8; 4]; 5] = [*b"cICP", *b"iCCP", *b"sRGB", *b"gAMA", *b"cHRM"];
 
-/// Which [`MARKS`] stand before the pixels, whole or not: of one that cannot be read the decoder says nothing.
+/// The [`MARKS`] before the pixels, whole or not: the decoder does not report unreadable ones.
 fn marks(source: &mut (impl Read + Seek)) -> io::Result<Vec<[u8; 4]>> {
     source.seek(SeekFrom::Start(SIGNATURE))?;
     let (mut found, mut head) = (Vec::new(), [0; 8]);
@@ -100,7 +100,7 @@ fn marks(source: &mut (impl Read + Seek)) -> io::Result<Vec<[u8; 4]>> {
     }
 }
 
-/// The colours of a picture, and the mark that should have said them if that cannot be used.
+/// The colours of a picture, and the mark with a higher precedence if that cannot be used.
 fn marked(info: &Info<'_>, marks: &[[u8; 4]], channels: usize) -> (Colours, Option<UnusedMark>) {
     let mut unused = None;
     if let Some(found) = code_points(info) {
@@ -155,7 +155,7 @@ fn code_points(info: &Info<'_>) -> Option<Result<Colours, UnusedMark>> {
         .and_then(|(chromaticities, transfer)| Colours::encoded(transfer, &chromaticities, range));
     Some(colours.ok_or_else(|| UnusedMark {
         mark: "cICP",
-        reason: format!("of the codes {primaries}, {transfer} nothing is known"),
+        reason: format!("the colour codes {primaries}, {transfer} are unknown"),
     }))
 }
 

@@ -162,7 +162,7 @@ fn chromaticities(places: [u32; 8]) -> Vec<u8> {
         .collect()
 }
 
-/// White, red, green and blue of Display P3 and of sRGB, as cHRM has them.
+/// White, red, green and blue of Display P3 and of sRGB, in the order of cHRM.
 const P3: [u32; 8] = [31_270, 32_900, 68_000, 32_000, 26_500, 69_000, 15_000, 6000];
 const SRGB: [u32; 8] = [31_270, 32_900, 64_000, 33_000, 30_000, 60_000, 15_000, 6000];
 /// sRGB's green in Display P3.
@@ -250,7 +250,7 @@ fn a_profile_among_the_marks_of_a_png() {
     assert!(near(profiled(None, GREEN), wide, 0.02));
     let by_codes = profiled(Some([1, 8, 0, 1]), grey);
     assert!(near(by_codes, [128.0 / 255.0; 3], 0.01), "{by_codes:?}");
-    // Codes of nothing leave it to the profile, and are told.
+    // Unknown codes leave the colours to the profile, and are reported.
     assert!(near(profiled(Some([3, 3, 0, 1]), GREEN), wide, 0.02));
 }
 
@@ -404,7 +404,7 @@ fn tiffs_of_floats_of_palettes_and_of_few_bits_are_read() {
     assert!(tiff_of([1, 8, 1, 3], &[], &[1]).is_err(), "no palette");
     // Black is 1 here.
     assert_eq!(got(tiff_of([1, 1, 1, 0], &[], &[0b0111_1111])), [1.0; 3]);
-    // Two of three.
+    // Two of three pixels.
     let grey = got(tiff_of([1, 2, 1, 1], &[], &[0b1000_0000]));
     assert!(near(grey, [0.402; 3], 1e-3), "{grey:?}");
     let signed = tiff_of([1, 16, 2, 1], &[], &[1, 0]).expect_err("a sign");
@@ -422,7 +422,7 @@ fn colours_that_were_multiplied_by_their_opacity_are_divided_by_it() {
     assert!(near(opacity(1, [128, 0, 0, 128]), half_red, 1e-3));
     assert!(near(opacity(2, [255, 0, 0, 128]), half_red, 1e-3));
     assert!(!near(opacity(2, [128, 0, 0, 128]), half_red, 0.1));
-    // Nothing is seen of a clear pixel, and colours brighter than white are white.
+    // Clear pixels are invisible, and colours brighter than white are white.
     assert_eq!(opacity(1, [0, 0, 0, 0]), [1.0; 3]);
     assert_eq!(opacity(1, [255, 255, 255, 7]), [1.0; 3]);
     let floats: Vec<u8> = [0.1f32, 0.0, 0.0, 0.5]

@@ -22,7 +22,7 @@ const PRIMARIES: Tag = Tag::Unknown(319);
 const LUMA_SHARES: Tag = Tag::Unknown(529);
 /// Luma shares of red, green and blue where a file gives none (TIFF 6.0, § 21: BT.601).
 const BT601: [f64; 3] = [0.299, 0.587, 0.114];
-/// In the tag ExtraSamples: opacity by which colours are multiplied, and by which they are not.
+/// Values of the tag ExtraSamples: opacity with and without premultiplied colours.
 const ASSOCIATED: u16 = 1;
 const UNASSOCIATED: u16 = 2;
 
@@ -148,7 +148,7 @@ pub(super) fn samples<R: BufRead + Seek>(
     Ok(Samples { numbers, channels })
 }
 
-/// Numbers of less than 8 bits, as they are in rows of whole bytes.
+/// Unpacked numbers of less than 8 bits, from rows of whole bytes.
 fn unpacked(packed: &[u8], row: usize, bits: u8) -> Vec<u8> {
     let each = usize::from(bits);
     let rows = packed.chunks_exact((row * each).div_ceil(8).max(1));
@@ -157,7 +157,7 @@ fn unpacked(packed: &[u8], row: usize, bits: u8) -> Vec<u8> {
         let at = i * each;
         (bytes[at / 8] >> (8 - each - at % 8)) & most
     };
-    // 3, 5, 6 and 7 bits are not read by the decoder, so none lies across two bytes.
+    // The decoder does not read 3, 5, 6 and 7 bits, so no number spans two bytes.
     rows.flat_map(|bytes| (0..row).map(move |i| number(bytes, i)))
         .collect()
 }
@@ -266,8 +266,8 @@ fn of_luma(
     })
 }
 
-/// The colours of a picture with this number of colour channels, and the mark that should have given them if that
-/// cannot be used.
+/// The colours of a picture with this number of colour channels, and the mark with a higher precedence if that cannot
+/// be used.
 fn marked<R: BufRead + Seek>(
     decoder: &mut Decoder<R>,
     channels: usize,

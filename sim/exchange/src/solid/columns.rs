@@ -7,8 +7,8 @@ use std::sync::Arc;
 use maulstick_appearance::bands::Banded;
 use maulstick_types::paint::TILE;
 
-/// Columns of a band, row after row from its lowest: the ends of each in m above the highest bare peaks, as
-/// [`ColumnPairing`](super::pairing::ColumnPairing) takes them.
+/// Columns of a band, row by row from its lowest: the ends of each in m above the highest bare peaks, for
+/// [`ColumnPairing`](super::pairing::ColumnPairing).
 pub(super) struct Columns {
     heights: Arc<Vec<f32>>,
     layered: BTreeMap<usize, Vec<f32>>,
@@ -54,7 +54,8 @@ impl Columns {
     }
 }
 
-/// The ends of a column without pieces and gaps thinner than `thin_m`, m; paint over a thin gap is put down on what is below it.
+/// The ends of a column without pieces and gaps thinner than `thin_m`, m; paint over a thin gap is moved down to the
+/// piece below.
 fn without_thin(ends: &[f32], thin_m: f64) -> Vec<f32> {
     let is_thin = |low: f32, high: f32| f64::from(high) - f64::from(low) < thin_m;
     let mut kept = vec![ends[0]];

@@ -29,7 +29,8 @@ impl Grid {
         self.step
     }
 
-    /// Triangles of the closed solid where nothing lies over air: two a space on top, two a space around and one under it.
+    /// Number of triangles of the closed solid without paint over air: two a space on top, two a space around and one
+    /// under it.
     pub(crate) fn triangles(&self) -> u64 {
         let [across, up] = self.spaces().map(|spaces| spaces as u64);
         2 * across * up + 6 * (across + up)

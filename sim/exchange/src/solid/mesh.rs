@@ -9,7 +9,7 @@ use super::prism::{Corner, FacetSink, PlacedColumn, Point, Side, cusp, triangula
 use super::rows::{Colour, Row};
 use crate::ExchangeError;
 
-/// Receives vertices and facets of a solid as they are made.
+/// Receiver of the vertices and facets of a solid.
 pub(crate) trait MeshSink {
     /// Adds the next vertex of the surface, with indices from 0.
     fn add_vertex(&mut self, _at: Point, _colour: Colour) {}

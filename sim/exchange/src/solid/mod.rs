@@ -1,6 +1,6 @@
 //! A painting's surface as a watertight solid, which [`write_stl`](crate::write_stl) and [`write_glb`](crate::write_glb) write.
 //!
-//! Paint in layers is shown whole, with its overhangs; elsewhere the solid is that of a map of heights.
+//! Paint in layers is complete, with its overhangs; elsewhere the solid is that of a height map.
 
 mod columns;
 mod grid;
@@ -27,7 +27,8 @@ pub(crate) const MM: f64 = 1e3;
 const BASES_MM: [f64; 2] = [0.01, 1000.0];
 /// Range of factors on heights.
 const EXAGGERATIONS: [f64; 2] = [0.0, 1000.0];
-/// Thickness below which a piece of paint over air, or the air under it, is left out, m: in the solid, and in the painting.
+/// Thickness below which a piece of paint over air, or the air under it, is left out, m: in the solid, and in the
+/// painting.
 const THIN_M: [f64; 2] = [1e-6, 1e-8];
 
 /// Settings of a solid.
@@ -44,13 +45,13 @@ pub struct SolidSetup {
 /// Size of a written solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolidSize {
-    /// Triangles in all.
+    /// Number of triangles.
     pub triangles: u64,
     /// Across, up and high, mm.
     pub size_mm: [f64; 3],
 }
 
-/// The least step with which a surface of `cells` has at most [`SOLID_TRIANGLES`] where no paint overhangs.
+/// The least step with which a surface of `cells` has at most [`SOLID_TRIANGLES`] triangles without overhangs.
 #[must_use]
 pub fn solid_step(cells: [u32; 2]) -> u32 {
     let cells = cells.map(|cells| cells as usize);
@@ -125,12 +126,11 @@ impl MeshSink for MeshCounts {
 
 /// File format of a solid.
 pub(crate) trait SolidFormat {
-    /// Triangles at most.
+    /// Greatest number of triangles.
     const MAX_TRIANGLES: u64;
     /// Passes over the surface, that of [`Solid::measure`] included.
     const PASSES: usize;
 
-    /// Writes the file.
     fn write(self, solid: &Solid<'_>, steps: &mut Steps<'_>) -> Result<(), ExchangeError>;
 }
 
@@ -153,7 +153,7 @@ pub(crate) fn write_solid<F: SolidFormat>(
 }
 
 impl<'a> Solid<'a> {
-    /// Measures the solid of a surface, for a file that has room for `max_triangles`.
+    /// Measures the solid of a surface, for a file of at most `max_triangles` triangles.
     pub(crate) fn measure(
         banded: &'a Banded<'a>,
         setup: SolidSetup,
@@ -192,7 +192,7 @@ impl<'a> Solid<'a> {
         Ok(solid)
     }
 
-    /// Hands its mesh to `sink`: lengths in units of which a metre has `metre`, rows with colours if they are needed.
+    /// Passes its mesh to `sink`: lengths in units of 1/`metre` m, rows with colours if needed.
     pub(crate) fn triangulate<S: MeshSink>(
         &self,
         metre: f64,
@@ -240,12 +240,12 @@ impl<'a> Solid<'a> {
         coarser(self.banded, self.setup)
     }
 
-    /// Triangles in all.
+    /// Number of triangles.
     pub(crate) fn triangles(&self) -> u64 {
         self.counts.surface_facets + self.counts.wall_facets
     }
 
-    /// Its size in units of which a metre has `metre`.
+    /// Its size in units of 1/`metre` m.
     pub(crate) fn size(&self, metre: f64) -> [f64; 3] {
         let scale = self.scale(metre);
         let [across, up] = self.banded.cells().map(|cells| cells as f64 * scale.cell);

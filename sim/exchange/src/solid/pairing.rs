@@ -1,10 +1,10 @@
 //! Pairing of the surfaces of two neighbouring columns (the correspondence problem of surfaces from cross-sections; Meyers,
 //! Skinner and Sloan 1992, *Surfaces from contours*).
 //!
-//! A column is what fills it, as its ends from the lowest up: the top of what lies on the ground, then bottom and top of each
-//! piece over air. So even ends are tops, odd ones bottoms. Pieces of two columns that overlap are one piece between them:
-//! an edge joins their lowest bottoms, another their highest tops. Pieces and gaps that the other column lacks are capped on
-//! the way to it, at a cusp. No two of these edges cross.
+//! A column is a list of the ends of its pieces from the lowest up: the top of the paint on the ground, then bottom and
+//! top of each piece over air. So even ends are tops, odd ones bottoms. Overlapping pieces of two columns form one
+//! piece between them: an edge joins their lowest bottoms, another their highest tops. Pieces and gaps that the other
+//! column lacks are capped in between, at a cusp. No two of these edges cross.
 
 /// Place of the cusp between its column and the next: short of that, or cusps from opposite sides would touch.
 pub(super) const CUSP: f64 = 127.0 / 128.0;

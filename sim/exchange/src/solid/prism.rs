@@ -46,7 +46,7 @@ pub(super) struct Side<'a> {
     pub(super) pairing: &'a ColumnPairing,
     /// Index of the vertex at its first cusp.
     pub(super) first: u32,
-    /// Distance of its cusps from their columns, as a share of the way to the other one.
+    /// Distance of its cusps from their columns, as a share of the distance to the other one.
     pub(super) reach: f64,
     /// True if the pairing is from the next column to this one.
     pub(super) is_reversed: bool,
@@ -73,7 +73,6 @@ pub(super) trait FacetSink {
     /// True for prisms that are flat: a wall's, in a vertical plane.
     const IS_WALL: bool;
 
-    /// Adds a vertex.
     fn add_vertex(&mut self, at: Point) -> Corner;
 
     /// Adds a facet, counterclockwise from outside.
@@ -161,15 +160,15 @@ fn boundary_loops(columns: &[PlacedColumn<'_>; 3], sides: &[Side<'_>; 3]) -> Vec
     loops
 }
 
-/// Corners between two cusps up to which the part of the loop between them is triangulated by itself.
+/// Greatest number of corners between two cusps for which the part of the loop between them is triangulated separately.
 const MAX_BETWEEN_CUSPS: usize = 2;
 
 /// Triangulates a loop.
 ///
-/// Between cusps it runs along upper or lower surfaces. With a cusp in each of two sides of the prism, either part is
-/// triangulated by itself, so that no facet joins an upper to a lower surface. Other loops get a vertex in their middle:
-/// facets between their corners alone could lie in a side of the prism and share an edge with two facets of the neighbour
-/// (an edge of four facets is not manifold), or have no area in a wall, where two of the columns are in one place.
+/// Between cusps it runs along upper or lower surfaces. With a cusp in each of two sides of the prism, both parts are
+/// triangulated separately, so that no facet joins an upper to a lower surface. Other loops get a vertex in their
+/// middle. Facets between their corners alone could lie in a side of the prism and share an edge with two facets of the
+/// neighbour (an edge of four facets is not manifold), or have no area in a wall, where two of the columns coincide.
 fn triangulate_loop<T: FacetSink>(
     corners: &[LoopCorner],
     sink: &mut T,

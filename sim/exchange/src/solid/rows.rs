@@ -14,9 +14,9 @@ pub(crate) type Colour = [f32; 3];
 /// A row of vertices from rim to rim.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Row {
-    /// The ends of each column, m, as [`ColumnPairing`](super::pairing::ColumnPairing) takes them.
+    /// Ends of each column, m, for [`ColumnPairing`](super::pairing::ColumnPairing).
     pub(crate) columns: Vec<Vec<f32>>,
-    /// Unlit colours seen from above; empty if they were not asked for.
+    /// Unlit colours seen from above; empty if not requested.
     pub(crate) colours: Vec<Colour>,
 }
 

@@ -1,4 +1,4 @@
-//! Solids of paint whose place is known.
+//! Solids of paint at known places.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -36,7 +36,7 @@ const SETUP: SolidSetup = SolidSetup {
 /// Paint as its share of each voxel, by place and layer.
 type Fill<'a> = &'a dyn Fn([usize; 3]) -> f32;
 
-/// The paint in so many layers, the lowest `first`; half of each voxel each of two paints.
+/// Paint in a number of layers, the lowest `first`; each voxel half of each of two paints.
 fn planes(tile: [usize; 2], first: usize, layers: usize, fill: Fill<'_>) -> Planes {
     let count = |cell: usize, layer: usize| {
         let at = [
@@ -93,7 +93,7 @@ impl Surface {
         Self::new(Relief::flat(CELL_M))
     }
 
-    /// Lays wet paint over what is there, which dries.
+    /// Adds wet paint over the existing paint, which dries.
     fn lay(mut self, first: usize, layers: usize, fill: Fill<'_>) -> Self {
         let ids: Vec<_> = self.store.iter().map(|(id, _)| id).collect();
         for id in ids {
@@ -107,7 +107,7 @@ impl Surface {
         self
     }
 
-    /// Heights as they are shown, cells.
+    /// Displayed heights, cells.
     fn shown(&self, shown: &'static dyn ShowPaint) -> Vec<f32> {
         let bare = BlankSurface {
             shown,
@@ -119,7 +119,7 @@ impl Surface {
         heights.map(|m| m / CELL_M as f32).collect()
     }
 
-    /// The solid, lengths in cells, what was told of it, and the height of its lowest place.
+    /// The solid, lengths in cells, its reported size, and the height of its lowest place.
     fn solid(&self, setup: SolidSetup) -> (Made, SolidSize, f64) {
         let banded = Banded::new(&self.store, &self.bare, &self.look, CELL_M);
         let mut tell = |_, _| {};
@@ -132,7 +132,7 @@ impl Surface {
         (made, solid.extent(), solid.range_m[0] / CELL_M)
     }
 
-    /// Its solid, and the volume of the paint in it, voxels: what it has more than without paint.
+    /// Its solid, and the volume of its paint, voxels: the difference from the solid without paint.
     fn paint(&self) -> (Made, f64) {
         let bare = Self {
             store: TileStore::new(CELLS),
@@ -212,7 +212,7 @@ impl Made {
         areas.fold(f64::INFINITY, f64::min)
     }
 
-    /// Share of places, four in each cell, over which air and paint do not take turns from below on: where facets cross.
+    /// Share of places, four in each cell, over which air and paint do not alternate upward, where facets cross.
     fn crossed(&self) -> f64 {
         const PLACES: [[f64; 2]; 4] = [[0.31, 0.17], [0.83, 0.36], [0.64, 0.71], [0.12, 0.94]];
         let mut met: BTreeMap<[usize; 3], Vec<(f64, bool)>> = BTreeMap::new();
@@ -255,7 +255,7 @@ impl Made {
             / all
     }
 
-    /// Whether each edge has two facets that run along it in opposite directions.
+    /// True if each edge has two facets that run along it in opposite directions.
     fn is_closed(&self) -> bool {
         self.edges().values().all(|runs| *runs == [1, 1])
     }
@@ -334,7 +334,7 @@ fn an_overhang_has_air_under_it_and_all_of_its_paint() {
     assert!(faulty.crossed() > 0.9, "facets that look down would pass");
     faulty.facets.swap_remove(100);
     assert!(!faulty.is_closed(), "a hole would pass");
-    // As a map of heights it would stand on the ground.
+    // As a height map it would stand on the ground.
     let (coarse, told, _) = surface.solid(SolidSetup { step: 3, ..SETUP });
     assert!(coarse.is_closed());
     assert!(
@@ -358,7 +358,7 @@ fn a_ball_in_the_air_is_one() {
     assert!(made.is_closed() && (volume / want - 1.0).abs() < 0.02);
     let middle = made.heights([62, 20]);
     assert!(near(&middle, &[0.0, 4.0, 20.0], 0.1), "{middle:?}");
-    // What is shown is its top, and not as much as its paint would be without the air under it.
+    // The displayed height is its top, including the air under it.
     let middle = 20 * CELLS[0] as usize + 62;
     let tops = [&Overhangs as &dyn ShowPaint, &Counted].map(|shown| surface.shown(shown)[middle]);
     assert!(

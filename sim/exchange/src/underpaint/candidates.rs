@@ -7,7 +7,7 @@ use super::films::{Films, MOST_PAINTS, Shares};
 
 /// Bound on ln of a ratio of shares: one part in 1100.
 const LARGEST_LN_RATIO: f64 = 7.0;
-/// Places of a pair, and each way of three paints.
+/// Number of places of a pair, and of three paints each way.
 const PAIR_GRID: i32 = 14;
 const TRIPLE_GRID: i32 = 8;
 
@@ -24,7 +24,7 @@ struct Candidate {
 pub(crate) struct Candidates(Vec<Candidate>);
 
 impl Candidates {
-    /// Of all paints of `films`, over a ground.
+    /// Candidates of all paints of `films`, over a ground.
     pub(crate) fn new(films: &Films, ground: &[f64]) -> Self {
         let count = films.paints();
         let mut all = Vec::new();

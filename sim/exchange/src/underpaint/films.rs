@@ -76,8 +76,7 @@ impl Films {
         lab(xyz, self.white)
     }
 
-    /// As [`lab`](Self::lab), and its slope by the amount of each paint, of which there is 1 in all:
-    /// more of one is less of the others.
+    /// [`lab`](Self::lab), and its slope by the amount of each paint, at a constant total of 1.
     pub(crate) fn lab_with_slopes(
         &self,
         shares: &Shares,

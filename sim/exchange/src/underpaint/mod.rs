@@ -1,8 +1,7 @@
-//! A picture as paint: for each of its colours the mixture whose film, so thick and over the surface's
-//! ground, looks nearest to it under the scene's light, gloss included.
+//! A picture as paint: for each of its colours the mixture whose film, of a given thickness over the surface's ground,
+//! looks nearest to it under the scene's light, gloss included.
 //!
-//! Colours of 8 bits a channel are solved once each (`search.rs`). Over a ground that is a
-//! picture it is its colour of 5 bits a channel that counts.
+//! Colours of 8 bits a channel are solved once each (`search.rs`). A pictured ground is rounded to 5 bits a channel.
 
 mod candidates;
 mod films;
@@ -33,7 +32,7 @@ use crate::read_image::Image;
 /// Significant part of a ground's channel.
 const GROUND_BITS: u8 = 0xf8;
 
-/// Ground and paints of an underpainting: all that the search needs, so that painting can continue meanwhile.
+/// Ground and paints of an underpainting: all inputs of the search, so that painting can continue meanwhile.
 #[derive(Clone, Debug)]
 pub struct Support {
     look: Arc<Appearance>,
@@ -74,15 +73,15 @@ impl Support {
 /// Colour error of an underpainting, ΔE₀₀ over the cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ColourError {
-    /// Cells.
+    /// Number of cells.
     pub cells: u64,
     /// Different colours that were solved.
     pub colours: u64,
-    /// Mean.
+    /// Mean, ΔE₀₀.
     pub mean: f64,
-    /// 95th percentile.
+    /// 95th percentile, ΔE₀₀.
     pub p95: f64,
-    /// The farthest.
+    /// Greatest, ΔE₀₀.
     pub max: f64,
 }
 
@@ -98,7 +97,7 @@ pub struct Underpainting {
     quanta: Vec<Vec<u32>>,
 }
 
-/// The colours of a ground, as far as they are distinguished.
+/// Distinguished colours of a ground.
 #[derive(Clone, Debug)]
 struct Grounds {
     bare: Arc<BlankSurface>,
@@ -176,11 +175,9 @@ fn counted(shares: &Shares, paints: usize, whole: u32) -> Vec<u32> {
     quanta
 }
 
-/// The picture as films of `thickness_m` on a surface; `progress` hears how many searches are done, of
-/// how many.
+/// The picture as films of `thickness_m` on a surface; `progress` gets the searches done, and their number.
 ///
-/// # Errors
-/// [`ImportError`] for a film too thin or too thick, or a surface too large.
+/// # Errors [`ImportError`] for a film too thin or too thick, or a surface too large.
 pub fn underpaint(
     support: &Support,
     image: &Image,
@@ -277,7 +274,7 @@ fn colour_error(counts: &BTreeMap<u64, u64>, reached: &[f64]) -> ColourError {
 }
 
 impl Underpainting {
-    /// The paints of which something is laid.
+    /// Names of the paints in use.
     #[must_use]
     pub fn paints(&self) -> &[String] {
         &self.paints
@@ -289,7 +286,7 @@ impl Underpainting {
         &self.colour_error
     }
 
-    /// The paint of each tile, for [`Painting::underpaint`] with [`paints`](Self::paints).
+    /// Paint of each tile, for [`Painting::underpaint`] with [`paints`](Self::paints).
     pub fn tiles(&self) -> impl Iterator<Item = LaidTile> {
         self.ground.tiles().map(|id| self.tile(id))
     }

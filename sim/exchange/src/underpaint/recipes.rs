@@ -1,26 +1,25 @@
-//! The mixture whose film comes nearest to a colour, in ΔE₀₀ as it is near that colour: so what no
-//! mixture reaches loses chroma rather than its hue.
+//! The mixture whose film comes nearest to a colour, in the local metric of ΔE₀₀: an unreachable colour loses chroma
+//! rather than its hue.
 //!
-//! Least squares of lightness, chroma and hue over the amounts of the paints, none of which is below 0:
-//! damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). Three equations have no more than three
-//! unknowns' worth to say, so among all steps δ that do the same the one with the least Σ D·δ² is
-//! taken, D the square of what a paint's amount does to the colour: δ = −D⁻¹Jᵀ(J·D⁻¹·Jᵀ + μ)⁻¹·f. So
-//! mixtures change as little, and as smoothly, as colours do. Paints that would go below 0 are left out
-//! and the step is taken anew without them.
+//! Least squares of lightness, chroma and hue over the amounts of the paints, none of which is below 0: damped
+//! Gauss-Newton steps (Levenberg 1944, Marquardt 1963). Three equations determine only three unknowns, so among all
+//! equivalent steps δ the one with the least Σ D·δ² is taken, with D the squared effect of a paint's amount on the
+//! colour: δ = −D⁻¹Jᵀ(J·D⁻¹·Jᵀ + μ)⁻¹·f. So mixtures change as little, and as smoothly, as colours do. Paints that
+//! would become negative are left out and the step is repeated without them.
 
 use maulstick_optics::colour::{Matrix, apply, delta_e_2000_near, solve3};
 
 use super::films::{Films, MOST_PAINTS, Shares};
 
-/// As near as this a colour is reached, ΔE₀₀.
+/// Distance at which a colour counts as reached, ΔE₀₀.
 const REACHED: f64 = 0.02;
-/// Steps with one set of paints at most.
+/// Greatest number of steps with one set of paints.
 const STEPS: usize = 40;
 /// A step that gains less than this share is the last but one.
 const GAIN: f64 = 1e-4;
 /// Damping with which steps begin, and with which they are given up.
 const DAMPING: [f64; 2] = [1e-3, 1e4];
-/// A paint is added if the colour comes nearer by more than this share of what it moves.
+/// Gain of adding a paint, as a share of its effect, below which it is not added.
 const WORTH: f64 = 0.02;
 /// Shares below this are none.
 const NOTHING: f64 = 1e-7;
@@ -40,13 +39,13 @@ pub(crate) struct Target {
 }
 
 impl Target {
-    /// Of a CIELAB colour.
+    /// Target of a CIELAB colour.
     pub(crate) fn new(lab: [f64; 3]) -> Self {
         let metric = delta_e_2000_near(lab);
         Self { lab, metric }
     }
 
-    /// CIELAB.
+    /// CIELAB of the target.
     pub(crate) fn lab(&self) -> [f64; 3] {
         self.lab
     }

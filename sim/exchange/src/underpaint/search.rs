@@ -1,15 +1,12 @@
-//! The mixtures for all colours of a picture, such that they change as smoothly as the colours do.
+//! Mixtures for all colours of a picture, which change as smoothly as the colours do.
 //!
-//! Recipes are sought for the corners of a lattice of colours first. What cannot be reached there goes
-//! toward grey until it can, along a line of one hue in Oklab ([`maulstick_optics::gamut`], whose grey
-//! it takes as far as the paints make it); what is darker than the paints becomes the nearest that they
-//! reach. The search for a colour then begins between the recipes of
-//! the corners around it, so no seams show where one set of paints gives way to another, under
-//! whatever light.
+//! Recipes are sought for the corners of a lattice of colours first. An unreachable corner moves toward grey until it
+//! is reachable, along a line of one hue in Oklab ([`maulstick_optics::gamut`], with its grey as far as the paints can
+//! make it); a corner darker than the paints becomes the nearest reachable colour. The search for a colour then begins
+//! between the recipes of the corners around it, so no seams show between sets of paints, under any light.
 //!
-//! A colour just outside of what the paints reach becomes the nearest that they do. Of one far outside
-//! there are several that are near, here the one and beside it the other; it becomes what the corners
-//! around it became, between them.
+//! A colour just outside of the paints' gamut becomes the nearest one inside. For one far outside, the nearest would
+//! jump between neighbours, so it is interpolated from the corners around it.
 
 use std::thread::scope;
 
@@ -33,15 +30,15 @@ const SIDE: usize = 18;
 const STARTS: usize = 3;
 /// A corner as near as this counts as reached.
 const REACHED: f64 = 0.3;
-/// Halvings of the way from a grey to a corner.
+/// Number of halvings between a grey and a corner.
 const HALVINGS: usize = 7;
 /// Steps of the greys that are tried, and how far inside of them ways begin, Oklab's lightness.
 const GREYS: usize = 40;
 const INSIDE: f32 = 0.02;
 /// Lightness in Oklab over which dark colours become the nearest that are reached instead.
 const DUSK: f32 = 0.1;
-/// Below the first, a colour becomes the nearest that is reached; above the second, what the corners
-/// around it became.
+/// Below the first, a colour becomes the nearest reachable one; above the second, it is interpolated from the corners
+/// around it.
 const FAR_DELTA_E: [f64; 2] = [0.5, 4.0];
 
 /// A colour that is sought, encoded sRGB, over one of the grounds.
@@ -52,7 +49,7 @@ pub(crate) struct TargetColour {
     pub(crate) ground: u64,
 }
 
-/// A corner of the lattice: its recipe, and how far in CIELAB what it became is from what it is.
+/// A corner of the lattice: its recipe, and the shift of its colour in CIELAB.
 #[derive(Clone, Copy, Debug, Default)]
 struct Corner {
     shares: Shares,
@@ -69,7 +66,7 @@ pub(crate) struct Search<'a> {
     /// Internal reflectances over which corners are solved.
     mean: Vec<f64>,
     candidates: Candidates,
-    /// The darkest and the lightest grey that is reached, Oklab's lightness; none where none is.
+    /// The darkest and the lightest reachable grey, Oklab's lightness; `None` where none is.
     greys: Option<[f32; 2]>,
 }
 
@@ -107,7 +104,7 @@ fn around(rgb: [u8; 3]) -> impl Iterator<Item = (usize, f64)> {
         }
         (number, weight)
     };
-    // Beyond the last corner of a side nothing weighs.
+    // Beyond the last corner of a side weights are 0.
     (0..8).map(corner).filter(|(_, weight)| *weight > 0.0)
 }
 
@@ -118,7 +115,7 @@ fn colour_of(corner: usize) -> [u8; 3] {
 }
 
 impl<'a> Search<'a> {
-    /// With `films` under the light of a studio; `mean` is what lies under them on the whole.
+    /// A search with `films` under the light of a studio; `mean` is the mean reflectance of the ground.
     pub(crate) fn new(films: &'a Films, studio: &Studio, mean: Vec<f64>) -> Self {
         let mut search = Self {
             films,
@@ -246,7 +243,7 @@ impl<'a> Search<'a> {
         f64::from((1.0 + (lightness - darkest) / DUSK).clamp(0.0, 1.0))
     }
 
-    /// The recipe of the most colourful colour that is reached on the way from a grey to a colour.
+    /// The recipe of the most colourful reachable colour between a grey and a colour.
     fn toward_grey(&self, linear: [f64; 3]) -> Option<Shares> {
         let [darkest, lightest] = self.greys?;
         let [lightness, a, b] = self.gamut.lab(linear.map(|channel| channel as f32));

@@ -1,4 +1,4 @@
-//! What holds for every export.
+//! Properties of every export.
 
 use std::io::{Cursor, Error, Seek, SeekFrom, Write};
 
@@ -55,7 +55,7 @@ fn the_palette_is_a_surface_and_a_third_one_is_not() {
     }
 }
 
-/// A disk with room for so many bytes.
+/// A disk with room for a number of bytes.
 struct Full(Cursor<Vec<u8>>, u64);
 
 impl Write for Full {

@@ -12,7 +12,7 @@ use maulstick_types::scene::CANVAS;
 use crate::mesh::{Facet, corners, is_watertight, stl_facets, volume};
 use crate::support::{CELL_M, CELLS, STL, bare, bare_of, file, painted, painted_of, speck};
 
-/// The primitive of a file: places, normals, colours, and numbers of vertices.
+/// The primitive of a file: places, normals, colours, and vertex indices.
 struct Read {
     places: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
@@ -202,8 +202,8 @@ fn srgb_level(linear: f32) -> f32 {
     255.0 * encoded
 }
 
-/// Greatest difference of vertex colours of the canvas's cells from the pixels of its unlit sRGB picture, in levels, where the
-/// gamut has the colour; and how many channels were compared.
+/// Greatest difference of vertex colours of the canvas's cells from the pixels of its unlit sRGB picture, in levels,
+/// for colours in the gamut; and the number of channels compared.
 fn off_picture(painting: &mut Painting, as_linear: fn(f32) -> f32) -> (f32, usize) {
     let mut to = Cursor::new(Vec::new());
     let setup = SolidSetup { step: 1, ..STL };

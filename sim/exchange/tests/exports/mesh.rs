@@ -22,7 +22,7 @@ pub(crate) fn corners(facets: &[StlFacet]) -> Vec<Facet> {
     facets.iter().map(|[_, corners @ ..]| *corners).collect()
 }
 
-/// Whether each edge has two opposite half-edges.
+/// True if each edge has two opposite half-edges.
 pub(crate) fn is_watertight(facets: &[Facet]) -> bool {
     let mut edges: BTreeMap<[[u32; 3]; 2], [u32; 2]> = BTreeMap::new();
     for facet in facets {

@@ -67,7 +67,7 @@ fn opened(painting: &mut Painting) -> Opened {
     }
 }
 
-/// Layers over each other, as every program lays them.
+/// Composited layers, as in other programs.
 fn over<'a>(layers: impl Iterator<Item = &'a (String, Vec<u8>)>) -> Vec<u8> {
     let mut below: Vec<u8> = Vec::new();
     for (_, layer) in layers {
@@ -131,7 +131,7 @@ fn lower_layers_are_the_painting_before_the_others_were_laid() {
             .expect("wet");
         seen.push(unlit_picture(&mut painting, CANVAS).rgb);
     }
-    // A layer less opaque than it was does not move what lies under it.
+    // A layer of reduced opacity leaves the layers under it unchanged.
     painting
         .apply(Opacity {
             layer: LayerRef::Number { number: 3 },

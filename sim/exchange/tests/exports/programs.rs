@@ -6,7 +6,7 @@ use std::process::Command;
 
 use crate::support::{decoded, file, painted};
 
-/// What a program says, within two minutes, at home in `folder`; none where there is no such program.
+/// Output of a program, within two minutes, at home in `folder`; `None` if it is absent.
 fn says(folder: &Path, program: &str, arguments: &[&str]) -> Option<String> {
     let mut command = Command::new("timeout");
     command.arg("120").arg(program).args(arguments);

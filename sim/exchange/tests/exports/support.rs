@@ -17,9 +17,9 @@ use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{BrushName, FilmThickness, LayerName, Share};
 
-/// No multiple of a tile either way.
+/// Size of the canvas, cells: no multiple of a tile.
 pub(crate) const CELLS: [u32; 2] = [150, 70];
-/// Of a cell.
+/// Side of a cell, m.
 pub(crate) const CELL_M: f64 = 2.5e-4;
 
 pub(crate) fn bare(cells: [u32; 2]) -> Painting {
@@ -113,7 +113,7 @@ pub(crate) fn painted_of(model: &str) -> Painting {
     painting
 }
 
-/// One cell, with a dry layer and wet paint.
+/// A painting of one cell, with a dry layer and wet paint.
 pub(crate) fn speck() -> Painting {
     let mut painting = bare([1, 1]);
     let mut lay = |paint: &str| {
@@ -157,11 +157,11 @@ pub(crate) const STL: SolidSetup = SolidSetup {
     step: 3,
 };
 
-/// An export into a file, which hears how far it is.
+/// An export into a file, with its progress.
 pub(crate) type Write =
     fn(&mut Painting, u32, &mut dyn File, &mut dyn FnMut(u64, u64)) -> Result<(), ExchangeError>;
 
-/// What exports write to.
+/// Target of exports.
 pub(crate) trait File: std::io::Write + std::io::Seek {}
 
 impl<T: std::io::Write + std::io::Seek> File for T {}

@@ -1,4 +1,4 @@
-//! Flows whose force is known: a cylinder in a channel, one that turns in a round vessel.
+//! Flows with a known force: a cylinder in a channel, one that turns in a round vessel.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use maulstick_num::ln;
 
 use super::*;
 
-/// μ = 1.5 Pa·s, and so slow that nothing but viscosity counts.
+/// μ = 1.5 Pa·s, slow enough for viscosity alone.
 const FLUID: Fluid = Fluid {
     density_kg_m3: 3.0,
     viscosity_m2_s: 0.5,

@@ -1,5 +1,5 @@
-//! Flows whose stress is known: plane Couette and Poiseuille flow, still fluid under pressure, in two and three
-//! dimensions; and the misprints, which must show.
+//! Flows with a known stress: plane Couette and Poiseuille flow, still fluid under pressure, in two and three
+//! dimensions; and the misprints, which must fail.
 
 use super::*;
 
@@ -61,7 +61,7 @@ fn wall_2d(velocity: fn([f64; 2]) -> [f64; 2], pressure: fn([f64; 2]) -> f64) ->
     }
 }
 
-/// The wrench by what a fault does to each face.
+/// The wrench with a fault applied to each face.
 fn faulty<const D: usize>(fields: &Formula<D>, fault: impl Fn(&mut FaceStress<D>)) -> Wrench<D> {
     let mut faces = face_stresses(fields, FLUID);
     faces.iter_mut().for_each(fault);
@@ -79,7 +79,7 @@ fn the_shear_of_plane_couette_flow_is_exact() {
     let couette = wall_2d(|[_, y]| [50.0 * (y - 0.02).max(0.0), 0.0], |_| 7.0);
     let expected = [MU * 50.0 * 0.08, -1200.0 * 7.0 * 0.08];
     assert!(close(faulty(&couette, |_| {}), expected));
-    // Seeded faults: the printed normal, and a kinematic pressure taken as it is.
+    // Seeded faults: the printed normal, and an unscaled kinematic pressure.
     let inward = faulty(&couette, |face| {
         face.normal = face.normal.map(|n| -n);
         face.viscous_pa = face.viscous_pa.map(|p| -p);
@@ -182,7 +182,7 @@ fn a_cube_in_a_pressure_gradient_floats_and_air_does_not_press() {
         velocity: |_| [0.0; 3],
         wall: |_| [0.0; 3],
     };
-    // Archimedes: half a cell beyond each face the pressure has gone on.
+    // Archimedes: the pressure rises by half a cell beyond each face.
     let weight = 1200.0 * 9.81 * 0.03 * 0.03 * 0.04;
     let floats = Wrench::of(face_stresses(&cube(Medium::Fluid), FLUID), [0.0; 3]);
     assert!(close(floats, [0.0, 0.0, weight]));

@@ -1,5 +1,5 @@
-// Kubelka-Munk films, four wavelengths at a time: the formulas of km.rs in maulstick-optics, term by
-// term. What follows it adds an entry point.
+// Kubelka-Munk films, four wavelengths at a time: the formulas of km.rs in maulstick-optics, term by term. An entry
+// point is appended.
 
 // Cells of a tile.
 const CELLS = 4096u;
@@ -10,11 +10,11 @@ override quads: u32 = (samples + 3u) / 4u;
 
 struct Tile {
     paints: u32,
-    // Where its thickness planes, its K and S, and what lies under it begin.
+    // Offsets of its thickness planes, its K and S, and its ground.
     thickness: u32,
     optics: u32,
     under: u32,
-    // From one wavelength to the next, and from cell to cell, of what lies under it.
+    // Strides of the ground: from one wavelength to the next, and from cell to cell.
     under_sample: u32,
     under_cell: u32,
 }
@@ -40,8 +40,8 @@ struct Decay {
     mean: vec4<f32>,
 }
 
-// decay_f32 of maulstick-num. WGSL's own exp may be off by 3 + 2t units in the last place. round()
-// takes the place of adding and subtracting a large number, which fast arithmetic may leave out.
+// decay_f32 of maulstick-num. WGSL's own exp may be off by 3 + 2t units in the last place. round() replaces adding
+// and subtracting a large number, which fast arithmetic may leave out.
 fn decay(t: vec4<f32>) -> Decay {
     let x = -min(t, vec4(40.0));
     let n = round(x * 1.44269504);
@@ -69,7 +69,7 @@ fn film_over(kd: vec4<f32>, sd: vec4<f32>, ground: vec4<f32>) -> Ratio {
 }
 
 fn ground(tile: Tile, cell: u32, sample: u32) -> f32 {
-    // The last four may be fewer: their weight is 0.
+    // The last group may have fewer wavelengths; the others have weight 0.
     let at = min(sample, samples - 1u);
     return under[tile.under + at * tile.under_sample + cell * tile.under_cell];
 }

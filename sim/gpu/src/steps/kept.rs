@@ -1,4 +1,4 @@
-//! Steps that are on the device alone: kept until they are settled, so that none is lost with it.
+//! Steps that are on the device alone, kept until they are settled, so that none is lost with it.
 
 use std::sync::Arc;
 
@@ -36,12 +36,12 @@ impl KeptSteps {
         }
     }
 
-    /// How many they are.
+    /// Number of steps.
     pub(crate) fn len(&self) -> usize {
         self.steps.len()
     }
 
-    /// Keeps one.
+    /// Keeps a step.
     pub(crate) fn keep(&mut self, step: &Step<'_>) {
         self.steps.push(KeptStep {
             before: step.sweep.before.map(|pose| self.shared(pose)),
@@ -56,7 +56,7 @@ impl KeptSteps {
         });
     }
 
-    /// A pose, which nearly always is one of the last step's.
+    /// A pose, shared with the last step where it is the same.
     fn shared(&self, pose: &HeadPose) -> Arc<HeadPose> {
         let last = self.steps.last();
         let last = last.into_iter().flat_map(|last| [&last.to, &last.from]);
@@ -64,7 +64,7 @@ impl KeptSteps {
         same.map_or_else(|| Arc::new(pose.clone()), Arc::clone)
     }
 
-    /// Does them all with another model, on window and load as they were last settled.
+    /// Repeats all steps with another model, on the last settled window and load.
     pub(crate) fn replay(
         &self,
         model: &mut dyn PaintModel,

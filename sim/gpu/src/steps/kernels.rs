@@ -1,51 +1,51 @@
-//! Stages as compute pipelines, each with those buffers of step.wgsl that it uses.
+//! Stages as compute pipelines, each with the buffers of step.wgsl that it uses.
 
 use super::record::RECORD_BYTES;
 use crate::device::Device;
 
-/// The buffers, by binding; 0 are the parameters of the step.
+/// Buffers, by binding; binding 0 is the parameters of the step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Binding {
     /// Poses of the head, by drawing.
     Poses = 1,
-    /// The head itself.
+    /// Constant geometry of the head.
     Head,
     /// Segments of the drawn head.
     Segments,
-    /// Counts of the window.
+    /// Counts of the window, a plane a paint.
     Planes,
-    /// The same while they change.
+    /// Scratch counts of the window.
     Other,
-    /// Heights under the paint.
+    /// Heights of the surface under the paint.
     Base,
-    /// The load.
+    /// Load of the brush.
     Load,
-    /// What is asked of the brush.
+    /// Amounts requested from the brush.
     Asks,
-    /// The lowest segment of each cell.
+    /// Lowest segment of each cell.
     Keys,
-    /// The cells in contact.
+    /// Cells in contact.
     Contacts,
     /// Velocities through faces of cells.
     Faces,
-    /// Sums of paints, by cell.
+    /// Sums of all paints by cell.
     Totals,
     /// Statistics of steps.
     Stats,
-    /// Workgroups that a step has planned.
+    /// Workgroup counts planned by a step.
     Groups,
-    /// What cells ask for.
+    /// Amounts requested by cells.
     Wants,
     /// The parameters of a blend, a record for each.
     Blend,
 }
 
 impl Binding {
-    /// How many they are, with that of the step's parameters.
+    /// Number of bindings, including that of the step's parameters.
     pub const COUNT: usize = Self::Blend as usize + 1;
 
-    /// Those with room for each cell of the grid.
+    /// Bindings sized by the cells of the grid.
     pub const OF_GRID: [Self; 5] = [
         Self::Keys,
         Self::Contacts,
@@ -54,7 +54,7 @@ impl Binding {
         Self::Wants,
     ];
 
-    /// Words that a cell of the grid has in it; 0 of one that has none.
+    /// Words per cell of the grid in this buffer; 0 if it is not sized by the grid.
     pub fn words_by_cell(self) -> u64 {
         match self {
             Self::Keys | Self::Faces | Self::Wants => 2,
@@ -68,56 +68,55 @@ impl Binding {
         matches!(self, Self::Poses | Self::Head | Self::Base)
     }
 
-    /// True if it holds parameters: one record of them is bound at a time.
+    /// True if it holds parameters, of which one record is bound at a time.
     fn is_uniform(self) -> bool {
         self == Self::Blend
     }
 }
 
-/// How many workgroups a stage has.
+/// Number of workgroups of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Groups {
-    /// As many as cover the cells of the grid.
+    /// Enough to cover the cells of the grid.
     Grid,
-    /// As many as cover the segments, and so the strips and faces.
+    /// Enough to cover the segments, and so the strips and faces.
     Segments,
-    /// As many as cover the cells of the grid, or the strips.
+    /// Enough to cover the cells of the grid, or the strips.
     GridAndStrips,
     /// One for each strip.
     Strips,
-    /// One.
+    /// One workgroup for the whole dispatch.
     One,
-    /// As the plan of the step says at this place: none where nothing is touched.
+    /// The number planned by the step at this offset: none where nothing is touched.
     Planned(u64),
 }
 
-/// What a stage is.
+/// Definition of a stage.
 pub struct Kernel {
-    /// Its name, also that of its entry point.
+    /// Name of the stage and of its entry point.
     pub name: &'static str,
-    /// Its WGSL in pieces, after what all stages share.
+    /// Pieces of WGSL, after the shared ones.
     pub source: &'static [&'static str],
-    /// Its overridable constants.
+    /// Overridable constants.
     pub constants: &'static [(&'static str, f64)],
-    /// The buffers that it takes.
+    /// Buffers that it uses.
     pub bindings: &'static [Binding],
-    /// Its workgroups.
+    /// Number of its workgroups.
     pub groups: Groups,
 }
 
 impl Kernel {
-    /// Its whole WGSL.
     fn wgsl(&self) -> String {
         SHARED.iter().chain(self.source).copied().collect()
     }
 
-    /// True if it takes the parameters of a blend.
+    /// True if it uses the parameters of a blend.
     pub fn blends(&self) -> bool {
         self.bindings.contains(&Binding::Blend)
     }
 }
 
-/// WGSL that all stages of steps begin with.
+/// WGSL at the beginning of all stages of steps.
 const SHARED: [&str; 3] = [
     include_str!("../shaders/steps/common/step.wgsl"),
     include_str!("../shaders/steps/common/shapes.wgsl"),
@@ -126,7 +125,7 @@ const SHARED: [&str; 3] = [
 
 use Binding as B;
 
-/// The lowest segment of each cell.
+/// Rasterizer: the lowest segment of each cell.
 pub const RASTERIZER: Kernel = Kernel {
     name: "rasterizer",
     source: &[include_str!("../shaders/steps/rasterizer.wgsl")],
@@ -137,15 +136,15 @@ pub const RASTERIZER: Kernel = Kernel {
 
 /// A stage on a device.
 pub struct Pipeline {
-    /// The stage.
+    /// Definition of the stage.
     pub kernel: &'static Kernel,
     layout: wgpu::BindGroupLayout,
-    /// Its pipeline.
+    /// Compute pipeline on the device.
     pub pipeline: wgpu::ComputePipeline,
 }
 
 impl Pipeline {
-    /// Makes the pipeline.
+    /// Compiles the pipeline of a stage.
     pub fn new(gpu: &Device, kernel: &'static Kernel) -> Self {
         let entry = |binding, ty, size| wgpu::BindGroupLayoutEntry {
             binding,
@@ -161,12 +160,12 @@ impl Pipeline {
         let mut entries = vec![entry(0, wgpu::BufferBindingType::Uniform, size)];
         entries.extend(kernel.bindings.iter().map(|binding| {
             let read_only = binding.read_only();
-            let storage = (wgpu::BufferBindingType::Storage { read_only }, None);
-            let (ty, size) = match binding.is_uniform() {
-                true => (wgpu::BufferBindingType::Uniform, size),
-                false => storage,
-            };
-            entry(*binding as u32, ty, size)
+            let storage = wgpu::BufferBindingType::Storage { read_only };
+            if binding.is_uniform() {
+                entry(*binding as u32, wgpu::BufferBindingType::Uniform, size)
+            } else {
+                entry(*binding as u32, storage, None)
+            }
         }));
         let device = &gpu.device;
         let label = Some(kernel.name);
@@ -201,7 +200,7 @@ impl Pipeline {
         }
     }
 
-    /// Its buffers, bound.
+    /// Bind group of its buffers.
     pub fn bind<'a>(
         &self,
         gpu: &Device,
@@ -216,9 +215,10 @@ impl Pipeline {
             })
         };
         let own = self.kernel.bindings.iter().map(|binding| {
-            let resource = match binding.is_uniform() {
-                true => record(buffer(*binding)),
-                false => buffer(*binding).as_entire_binding(),
+            let resource = if binding.is_uniform() {
+                record(buffer(*binding))
+            } else {
+                buffer(*binding).as_entire_binding()
             };
             (*binding as u32, resource)
         });

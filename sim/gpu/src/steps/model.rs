@@ -1,4 +1,4 @@
-//! A paint model that defers its steps to the device; it is the processor's once that is lost.
+//! A paint model that defers its steps to the device, and continues on the processor once that is lost.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -7,42 +7,42 @@ use maulstick_canvas::window::Window;
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_model::interface::{CountOwn, PaintModel, Rest, Step, StepReport, Transfer};
 
+use super::device_layout::DeviceLayout;
 use super::kept::KeptSteps;
 use super::kernels::Kernel;
-use super::residence::Residence;
 use super::traffic::Traffic;
 use super::workspace::{Batch, Workspace};
 use crate::device::{Device, GpuError};
 
-/// Unsettled steps after which they are settled at the latest.
+/// Number of unsettled steps after which they are settled.
 const MOST_KEPT: usize = 256;
 
-/// What makes stages of a model's steps.
+/// Planner of a model's steps as stages.
 pub trait Planner: Send {
-    /// Adds a step to a batch, the brush's step of this number. The rows of the window that it may change; none where the
-    /// processor is to do it.
+    /// Adds a step to a batch, with its number since the brush's load. Returns the rows of the window that it may
+    /// change; `None` where the processor must do the step.
     fn plan(
         &self,
         step: &Step<'_>,
-        on: &Residence,
+        on: &DeviceLayout,
         number: u64,
         batch: &mut Batch,
     ) -> Option<Range<usize>>;
 }
 
-/// What is on the device.
+/// State that is on the device.
 struct Session {
-    on: Residence,
+    on: DeviceLayout,
     kept: KeptSteps,
     batch: Batch,
     uploaded: bool,
     /// Rows of the window that may have changed.
     rows: Range<usize>,
-    /// Whether paint may have come from nowhere.
+    /// True if paint may have been created without being counted.
     uncounted: bool,
 }
 
-/// A paint model on the device; on the processor once that is lost.
+/// A paint model on the device, and on the processor once that is lost.
 pub struct GpuModel {
     workspace: Option<Workspace>,
     planner: Box<dyn Planner>,
@@ -56,8 +56,7 @@ pub struct GpuModel {
 impl GpuModel {
     /// A model of these stages on a device.
     ///
-    /// # Errors
-    /// A [`GpuError`] where the driver does not take the shaders.
+    /// # Errors A [`GpuError`] where the driver rejects the shaders.
     pub fn new(
         gpu: Device,
         kernels: &'static [Kernel],
@@ -81,17 +80,16 @@ impl GpuModel {
         &self.adapter
     }
 
-    /// What its steps move, counted for as long as the device lasts.
+    /// Traffic of its steps, counted while the device lasts.
     #[must_use]
     pub fn traffic(&self) -> Arc<Traffic> {
         let workspace = self.workspace.as_ref();
         workspace.map_or_else(Arc::default, |workspace| Arc::clone(&workspace.traffic))
     }
 
-    /// Has the device do all steps so far, and waits for it; they stay to be settled.
+    /// Submits all steps so far and waits for them; they remain unsettled.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn wait(&mut self, window: &Window, load: &BrushLoad) -> Result<(), GpuError> {
         let (Some(workspace), Some(session)) = (&mut self.workspace, &mut self.session) else {
             return Ok(());
@@ -100,7 +98,6 @@ impl GpuModel {
         workspace.gpu.wait()
     }
 
-    /// Gives the device what it has not heard of yet.
     fn flush(
         workspace: &mut Workspace,
         session: &mut Session,
@@ -119,7 +116,7 @@ impl GpuModel {
         Ok(())
     }
 
-    /// The processor goes on: with what the device had not given back.
+    /// Switches to the processor, which repeats the unsettled steps.
     fn fall(&mut self, error: &GpuError, window: &mut Window, load: &mut BrushLoad) -> StepReport {
         self.workspace = None;
         self.fall = Some(format!("the graphics device failed: {error}"));
@@ -129,7 +126,7 @@ impl GpuModel {
         })
     }
 
-    /// The processor does a step, once all that were before it are settled.
+    /// Settles all earlier steps, then does a step on the processor.
     fn settle_and_step(&mut self, step: &mut Step<'_>) -> StepReport {
         let mut report = self.settle(step.window, step.load);
         report.add(&self.cpu.step(step));
@@ -165,7 +162,7 @@ impl PaintModel for GpuModel {
             return self.cpu.step(step);
         };
         if self.session.is_none() {
-            self.session = Residence::new(step).map(|on| Session {
+            self.session = DeviceLayout::new(step).map(|on| Session {
                 on,
                 kept: KeptSteps::of(step.head.clone()),
                 batch: Batch::default(),
@@ -175,7 +172,7 @@ impl PaintModel for GpuModel {
             });
         }
         let Some(session) = &mut self.session else {
-            // Too large for the device: the processor has the room.
+            // Too large for the device; the processor has the memory.
             return self.cpu.step(step);
         };
         let number = session.on.steps() + session.kept.len() as u64;
@@ -187,9 +184,10 @@ impl PaintModel for GpuModel {
         };
         session.kept.keep(step);
         session.uncounted |= step.lasting || step.handling.transfer == Transfer::Sponge;
-        session.rows = match session.rows.is_empty() {
-            true => rows,
-            false => session.rows.start.min(rows.start)..session.rows.end.max(rows.end),
+        session.rows = if session.rows.is_empty() {
+            rows
+        } else {
+            session.rows.start.min(rows.start)..session.rows.end.max(rows.end)
         };
         if session.kept.len() >= MOST_KEPT {
             return self.settle(step.window, step.load);
@@ -238,7 +236,7 @@ impl PaintModel for GpuModel {
         self.cpu.count_own()
     }
 
-    fn take_fall(&mut self) -> Option<String> {
+    fn take_backend_change(&mut self) -> Option<String> {
         self.fall.take()
     }
 }

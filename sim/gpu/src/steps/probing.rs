@@ -1,12 +1,12 @@
-//! A step as far as a stage, for those who look at what single stages leave.
+//! A step up to a stage, for inspection of single stages.
 
 use std::ops::Range;
 
 use maulstick_model::interface::Step;
 
+use super::device_layout::DeviceLayout;
 use super::kernels::Kernel;
 use super::model::Planner;
-use super::residence::Residence;
 use super::workspace::{Batch, Workspace};
 use crate::device::{Device, GpuError};
 
@@ -18,17 +18,16 @@ pub struct Probing<P> {
     planner: P,
 }
 
-/// What of a step is on the device.
+/// State of a step on the device.
 pub struct Probed {
-    on: Residence,
+    on: DeviceLayout,
     rows: Range<usize>,
 }
 
 impl<P: Planner> Probing<P> {
     /// The stages of a planner on a device.
     ///
-    /// # Errors
-    /// A [`GpuError`] where the driver does not take the shaders.
+    /// # Errors A [`GpuError`] where the driver rejects the shaders.
     pub fn new(gpu: Device, kernels: &'static [Kernel], planner: P) -> Result<Self, GpuError> {
         Ok(Self {
             workspace: Workspace::new(gpu, kernels)?,
@@ -37,9 +36,9 @@ impl<P: Planner> Probing<P> {
         })
     }
 
-    /// Does those stages of a step that come up to the last one called `last`. None where it is not for the device.
+    /// Runs the stages of a step up to the last one called `last`; `None` where the device cannot do the step.
     pub fn run(&mut self, step: &Step<'_>, last: &str) -> Result<Option<Probed>, GpuError> {
-        let Some(on) = Residence::new(step) else {
+        let Some(on) = DeviceLayout::new(step) else {
             return Ok(None);
         };
         let mut batch = Batch::default();
@@ -54,7 +53,7 @@ impl<P: Planner> Probing<P> {
         Ok(Some(Probed { on, rows }))
     }
 
-    /// Writes what the stages did to a step's window and load.
+    /// Writes the result of the stages to a step's window and load.
     pub fn write(&mut self, probed: Probed, step: &mut Step<'_>) -> Result<(), GpuError> {
         let width = step.window.width();
         let Probed { on, rows } = probed;

@@ -1,4 +1,4 @@
-//! A step as the shaders take it.
+//! A step in the layout of the shaders.
 
 use bytemuck::{Pod, Zeroable};
 use maulstick_brush::head::STATIONS;
@@ -7,12 +7,12 @@ use maulstick_model::brush::head::border;
 use maulstick_model::footprint::ribbons::{middle, rank};
 use maulstick_model::interface::{Step, Sweep, Transfer};
 
-use super::residence::Residence;
+use super::device_layout::DeviceLayout;
 
-/// Scores reach this far below and above what reaches lowest and stands highest, cells: ranks, and what
-/// covers a cell only in part.
+/// Margins of scores below the lowest reach and above the highest paint, cells: for ranks, and for partly covered
+/// cells.
 const MARGIN: [f32; 2] = [0.1, 0.95];
-/// No plane.
+/// Number of an absent plane.
 const NONE: u32 = u32::MAX;
 
 /// `Step` of step.wgsl.
@@ -64,24 +64,24 @@ pub struct StepRecord {
     swap: f32,
     film_most: f32,
     seep: [f32; 2],
-    /// In so many parts its paint moves.
+    /// Number of parts in which its paint moves.
     pub parts: u32,
     room: [u32; 3],
 }
 
 /// Bytes from one record to the next.
 pub const RECORD_BYTES: u64 = size_of::<StepRecord>() as u64;
-/// Words of a record, also of one of a blend.
+/// Words of a record, of a step or of a blend.
 pub const RECORD_WORDS: usize = size_of::<StepRecord>() / 4;
 
 /// The cells on which a step works.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
-    /// Its lower left cell, in the window, beyond which it may go.
+    /// Its lower left cell relative to the window, which it may exceed.
     pub from: [i64; 2],
     /// Its columns and rows.
     pub size: [u32; 2],
-    /// Its cells that may be touched, from the first up to but not with the second.
+    /// Cells that may be touched, half-open.
     pub inside: [[u32; 2]; 2],
 }
 
@@ -102,11 +102,11 @@ fn number_and_flow(transfer: Transfer) -> (u32, f32) {
 }
 
 impl StepRecord {
-    /// A motion of a step of a brush and a window that are on the device; nothing is drawn.
+    /// A motion of a step, for a brush and a window on the device, without a drawing of the head.
     pub fn new(
         step: &Step<'_>,
         sweep: &Sweep<'_>,
-        on: &Residence,
+        on: &DeviceLayout,
         (grid, number): (&Grid, usize),
     ) -> Self {
         let (traits, after) = (&step.traits, sweep.to);
@@ -114,7 +114,7 @@ impl StepRecord {
         let (transfer, flow) = number_and_flow(step.handling.transfer);
         Self {
             half_widths: std::array::from_fn(|i| traits.half_width_before(i + 1)),
-            // Modulo 2³²: where it goes beyond the window no cell is looked at.
+            // Modulo 2³²: beyond the window no cell is read.
             from: grid.from.map(|cell| cell as u32),
             size: grid.size,
             row: step.window.width() as u32,
@@ -164,7 +164,7 @@ impl StepRecord {
         }
     }
 
-    /// Has the head drawn in this motion, whose poses go to the end of `poses`.
+    /// Adds the drawing of the head in this motion, and appends its poses to `poses`.
     pub fn draw(mut self, step: &Step<'_>, sweep: &Sweep<'_>, poses: &mut Vec<f32>) -> Self {
         let head = step.head;
         let (after, before) = (sweep.to, sweep.from);
@@ -180,7 +180,7 @@ impl StepRecord {
                     .map(|(after, before)| after - before),
             );
         };
-        // Strips are drawn where they are in the middle of the step.
+        // Strips are drawn at their place in the middle of the step.
         for (after, before) in [
             (&after.x, &before.x),
             (&after.y, &before.y),
@@ -205,7 +205,7 @@ impl StepRecord {
         self
     }
 
-    /// A square of cells in a window of that size with a `stain`, quanta, on which paint moves and nothing else.
+    /// A square of cells in a window of that size with a `stain`, quanta, for tests of moving paint alone.
     #[must_use]
     pub fn of_square(side: u32, planes: u32, stain: f32) -> Self {
         Self {

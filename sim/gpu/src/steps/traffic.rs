@@ -1,12 +1,12 @@
-//! What the stages of steps move, counted for who plans for a card: each buffer that a stage is bound to once, gone
-//! over as far as the step's cells or the brush's texels go. A device's caches spare some of it.
+//! Memory traffic of the stages, for comparing graphics cards: each buffer bound to a stage counts once, as far as
+//! the step's cells or the brush's texels extend. A device's caches reduce it.
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
+use super::device_layout::DeviceLayout;
 use super::kernels::{Binding, Kernel};
-use super::residence::Residence;
 
-/// Counted since the model was made.
+/// Counters since the model was made.
 #[derive(Debug, Default)]
 pub struct Traffic {
     steps: AtomicU64,
@@ -15,7 +15,7 @@ pub struct Traffic {
 }
 
 impl Traffic {
-    /// Steps, their dispatches and bytes.
+    /// Number of steps, of their dispatches and of bytes.
     #[must_use]
     pub fn counts(&self) -> [u64; 3] {
         [&self.steps, &self.dispatches, &self.bytes].map(|count| count.load(Relaxed))
@@ -26,8 +26,8 @@ impl Traffic {
         self.steps.fetch_add(1, Relaxed);
     }
 
-    /// Counts a dispatch over a grid of so many cells.
-    pub fn dispatch(&self, kernel: &Kernel, on: &Residence, cells: u64) {
+    /// Counts a dispatch over a grid with this number of cells.
+    pub fn dispatch(&self, kernel: &Kernel, on: &DeviceLayout, cells: u64) {
         let (slots, strips) = (on.slots.len() as u64, on.strips as u64);
         let words = |binding: &Binding| match binding {
             Binding::Poses => on.poses_words() as u64,

@@ -1,4 +1,4 @@
-//! The buffers of the device and what is done with them: upload, steps, read-back.
+//! The buffers of the device and their use: upload, steps, read-back.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -10,41 +10,41 @@ use maulstick_model::brush::load::BrushLoad;
 use maulstick_model::interface::StepReport;
 use wgpu::BufferUsages as Usage;
 
+use super::device_layout::{DeviceLayout, Settled};
 use super::kernels::{Binding, Groups, Kernel, Pipeline};
 use super::record::{RECORD_BYTES, RECORD_WORDS, StepRecord};
-use super::residence::{Residence, Settled};
 use super::traffic::Traffic;
 use crate::arena::{Arena, read};
 use crate::device::{Device, GpuError};
 
-/// Steps of a submission.
+/// Number of steps of a submission.
 pub const BATCH: usize = 64;
-/// Blends of a batch: the device does some while the next ones are prepared.
+/// Greatest number of blends of a batch: the device does some while the next ones are prepared.
 const MOST_BLENDS: usize = 128;
-/// Most bytes of the poses of a batch.
+/// Greatest size of a batch's poses, bytes.
 const POSES_BYTES: usize = 16 << 20;
 /// Words of the statistics of all steps: cells touched, wet paint and thinner on them, the highest paint.
 const TALLY: u64 = 4;
-/// Words of the statistics: those and STEP_STATS a step.
+/// Words of the statistics: those, and STEP_STATS a step.
 const STATS: u64 = TALLY + 20 * BATCH as u64;
-/// Invocations of a workgroup that goes over a grid, and over strips or segments.
+/// Number of invocations of a workgroup over a grid, and over strips or segments.
 const GROUP: [u64; 2] = [256, 64];
 
-/// A stage to be done.
+/// Dispatch of a stage.
 #[derive(Clone, Copy, Debug)]
 pub struct Call {
-    /// Its place among the model's.
+    /// Index of the stage among the model's.
     pub stage: usize,
-    /// The record of its step.
+    /// Index of the record of its step.
     pub record: usize,
-    /// That of its blend.
+    /// Index of the record of its blend.
     pub blend: usize,
 }
 
-/// Steps that are not yet given to the device.
+/// Steps that are not yet submitted.
 #[derive(Default)]
 pub struct Batch {
-    /// How many they are.
+    /// Number of steps.
     pub steps: usize,
     /// Parameters of steps, and of the parts of steps in which the head is drawn anew.
     pub records: Vec<StepRecord>,
@@ -52,12 +52,12 @@ pub struct Batch {
     pub poses: Vec<f32>,
     /// Parameters of blends.
     pub blends: Vec<[u32; RECORD_WORDS]>,
-    /// The stages in their order.
+    /// Stages in order.
     pub calls: Vec<Call>,
 }
 
 impl Batch {
-    /// Takes a record; a stage with it and the next blend.
+    /// Appends a record; returns a call of a stage with it and the next blend.
     pub fn next(&mut self, record: StepRecord, stage: usize) -> Call {
         self.records.push(record);
         Call {
@@ -67,14 +67,14 @@ impl Batch {
         }
     }
 
-    /// Leaves out what comes after the last stage of this name.
+    /// Drops all calls after the last one of the stage called `name`.
     pub fn end_after(&mut self, kernels: &[Kernel], name: &str) {
         let last = |call: &Call| kernels[call.stage].name == name;
         let count = self.calls.iter().rposition(last);
         self.calls.truncate(count.map_or(0, |last| last + 1));
     }
 
-    /// True if it is time that the device gets it.
+    /// True if the batch is to be submitted.
     pub fn is_full(&self) -> bool {
         self.steps == BATCH
             || self.blends.len() >= MOST_BLENDS
@@ -88,15 +88,14 @@ pub struct Workspace {
     pub gpu: Device,
     pipelines: Vec<Pipeline>,
     records: Arena,
-    /// By binding.
     buffers: Vec<Arena>,
     back: Arena,
-    /// What its steps move, counted.
+    /// Traffic of its steps.
     pub traffic: Arc<Traffic>,
 }
 
 impl Workspace {
-    /// Makes the pipelines.
+    /// Compiles the pipelines.
     pub fn new(gpu: Device, kernels: &'static [Kernel]) -> Result<Self, GpuError> {
         let pipelines =
             gpu.guarded(|| Ok(kernels.iter().map(|k| Pipeline::new(&gpu, k)).collect()))?;
@@ -130,10 +129,10 @@ impl Workspace {
         self.buffers[binding as usize].of(&self.gpu, 4 * words);
     }
 
-    /// Takes window and load onto the device.
+    /// Uploads window and load.
     pub fn upload(
         &mut self,
-        on: &Residence,
+        on: &DeviceLayout,
         (window, load): (&Window, &BrushLoad),
         head: &Head,
     ) -> Result<(), GpuError> {
@@ -155,8 +154,8 @@ impl Workspace {
         })
     }
 
-    /// Gives the device a batch of steps.
-    pub fn submit(&mut self, on: &Residence, batch: &Batch) -> Result<(), GpuError> {
+    /// Submits a batch of steps.
+    pub fn submit(&mut self, on: &DeviceLayout, batch: &Batch) -> Result<(), GpuError> {
         let gpu = self.gpu.clone();
         gpu.guarded(|| {
             let cells = batch.records.iter().map(StepRecord::cells).max();
@@ -164,7 +163,7 @@ impl Workspace {
             for binding in Binding::OF_GRID {
                 self.room(binding, binding.words_by_cell() * cells);
             }
-            // A grid may go beyond the window.
+            // A grid may extend beyond the window.
             let most = cells.max(on.cells as u64);
             self.room(Binding::Other, most * on.slots.len() as u64);
             self.fill(Binding::Blend, &[cast_slice(&batch.blends)])?;
@@ -217,10 +216,10 @@ impl Workspace {
         })
     }
 
-    /// Reads rows of the window, the load, and what the steps did.
+    /// Reads back rows of the window, the load, and the statistics.
     pub fn read_back(
         &mut self,
-        on: &Residence,
+        on: &DeviceLayout,
         rows: Range<usize>,
         row: usize,
     ) -> Result<(Settled, StepReport), GpuError> {
@@ -247,7 +246,7 @@ impl Workspace {
         })
     }
 
-    /// Reads parts of buffers, one after the other: which, from where, how many bytes.
+    /// Reads concatenated parts of buffers: which, offset, number of bytes.
     pub fn read<T>(
         &mut self,
         ranges: &[(Binding, u64, u64)],

@@ -1,4 +1,4 @@
-//! A painting with a brush, strokes for it, and what two such paintings differ by.
+//! A painting with a brush, strokes for it, and the difference of two such paintings.
 
 use maulstick_appearance::picture::{Depth, Export};
 use maulstick_brush::BrushFile;

@@ -6,12 +6,12 @@ use maulstick_model::interface::{Handling, PaintModel, StepReport, Transfer};
 
 use crate::scene::{Scene, lying};
 
-/// By how much two backends may differ.
+/// Tolerances between two backends.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Near {
-    /// Quanta by which a count on a cell may be off, and one on the brush, where many cells draw on a texel.
+    /// Tolerated difference, quanta, of a count on a cell, and of one on the brush, where many cells draw on a texel.
     pub(crate) quanta: [f32; 2],
-    /// Share of the counts of either kind that may be farther off, and of the cells that only one touches.
+    /// Tolerated share of the counts of either kind that differ more, and of the cells that only one touches.
     pub(crate) beyond: f64,
 }
 
@@ -25,7 +25,7 @@ fn step(model: &mut dyn PaintModel, scene: &mut Scene, lasting: bool) -> StepRep
     report
 }
 
-/// By how much counts on cells, and on the brush, of two scenes are apart.
+/// Differences between two scenes of counts on cells, and on the brush.
 fn apart(one: &Scene, two: &Scene) -> [Vec<f32>; 2] {
     let mut apart = [const { Vec::new() }; 2];
     for slot in 0..SLOTS {
@@ -47,7 +47,7 @@ fn after(counts: &Counts, report: &StepReport) -> Counts {
     })
 }
 
-/// Every mode does on the device what it does on the processor, in these scenes.
+/// In these scenes the device agrees with the processor in every mode.
 pub(crate) fn agree(
     gpu: &mut dyn PaintModel,
     cpu: &mut dyn PaintModel,

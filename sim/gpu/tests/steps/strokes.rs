@@ -1,4 +1,4 @@
-//! Whole strokes of any model on the device: twice the same, with the books in order, and when the device is lost.
+//! Whole strokes of any model on the device: twice the same, with balanced books, and after a loss of the device.
 
 use maulstick_gpu::GpuError;
 use maulstick_painting::edits::{Clean, Load};
@@ -11,7 +11,7 @@ use maulstick_types::{Flags, Header, Message as _, name_hash};
 use crate::device;
 use crate::easel::{Easel, all, lifted, mixture, paint, stroke, volume};
 
-/// True if what two backends painted where there was as much before is alike.
+/// True if the paintings of two backends agree, given the amount before.
 pub(crate) type Agree<'a> = &'a dyn Fn(&mut Painting, &mut Painting, u64) -> bool;
 
 /// Whoever looks at the painting meanwhile, and however often: the same bytes, after so many of 60 states of a stroke.
@@ -89,7 +89,7 @@ pub(crate) fn header(seq: u64) -> Header {
     }
 }
 
-/// What a paint node with this sequencer has decided.
+/// Decisions of a paint node with this sequencer.
 pub(crate) fn decisions(sequencer: &mut Sequencer) -> Vec<Decision> {
     let entries = sequencer.drain_journal().into_iter();
     let decided = entries.filter_map(|entry| match entry.entry {

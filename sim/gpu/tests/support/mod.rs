@@ -1,4 +1,4 @@
-//! Random films, and what they are in plain f64: film over film, wavelength by wavelength.
+//! Random films, and their reflectance in plain f64: film over film, wavelength by wavelength.
 
 use maulstick_optics::backend::{FilmBackend, MOST_PAINTS, TILE_CELLS};
 use maulstick_optics::colour::{linear_srgb_as_it_is, xyz_to_linear_srgb};
@@ -7,7 +7,7 @@ use maulstick_optics::{FilmPlanes, PaintLibrary, Studio, Under, km};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng as _;
 
-/// Every so many cells the oracle looks at one: it is slow.
+/// Interval between the cells that the slow oracle tests.
 pub(crate) const STRIDE: usize = 61;
 
 /// Uniform in 0..1.
@@ -116,7 +116,7 @@ pub(crate) fn studio(rule: RuleKind, samples: usize) -> (Studio, StudioSettings)
     (studio, settings)
 }
 
-/// Lets `work` see films as backends take them.
+/// Runs `work` with films in the layout of backends.
 pub(crate) fn as_tiles<T>(films: &[Film], work: impl FnOnce(&[FilmPlanes<'_>]) -> T) -> T {
     let paints: Vec<Vec<(usize, &[f32])>> = films
         .iter()
@@ -139,8 +139,8 @@ pub(crate) fn as_tiles<T>(films: &[Film], work: impl FnOnce(&[FilmPlanes<'_>]) -
     work(&tiles)
 }
 
-/// How far a backend that is told `told` is from the plain films `films`: greatest difference of
-/// linear sRGB, and of internal reflectance.
+/// Greatest differences of a backend's results `told` from the plain films `films`: of linear sRGB, and of internal
+/// reflectance.
 pub(crate) fn off(
     backend: &mut dyn FilmBackend,
     (studio, settings): &(Studio, StudioSettings),

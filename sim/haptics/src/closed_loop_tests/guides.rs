@@ -1,8 +1,8 @@
-//! Hands on a guide in the air, without the servo's other guards: what shakes and what does not, and how far hands that go
-//! along a path stay from it.
+//! Hands on a guide in the air, without the servo's other guards: stability, and distance from the path while moving
+//! along it.
 //!
-//! The bound is that of a wall (`walls`): a guide of stiffness K, felt `delay` late at a period T, needs damping
-//! b > K·(T/2 + delay).
+//! The bound is that of a wall (`walls`): a guide of stiffness K with a delay `delay` at a period T needs damping b >
+//! K·(T/2 + delay).
 
 use glam::DVec3;
 use maulstick_num::sin;
@@ -33,7 +33,7 @@ fn guide(points_m: Vec<[f64; 3]>, stiffness_n_m: f64) -> Guide {
     .expect("a guide")
 }
 
-/// The bounds of the bare guide.
+/// Limits of the bare guide.
 fn unguarded() -> Limits {
     let limits = super::unguarded();
     Limits {
@@ -57,8 +57,8 @@ struct Hold {
 }
 
 impl Hold {
-    /// From .7 s to 2 s the hand's target jumps by 4 mm every 100 ms. How far the tip moves, peak to peak, in the last half
-    /// second of five, m.
+    /// From .7 s to 2 s the hand's target jumps by 4 mm every 100 ms. Movement of the tip, peak to peak, in the last
+    /// half second of five, m.
     fn wobble(&self, limits: Limits) -> f64 {
         let mut servo = Servo::new(limits);
         let mut plant = Plant::omni(self.hand, DVec3::ZERO);
@@ -120,7 +120,7 @@ fn within_the_bound_of_its_damping_a_guide_is_still_at_any_delay() {
     }
 }
 
-/// The seeded faults: were these still, the tests above could not fail.
+/// The seeded faults: if these were still, the tests above could not fail.
 #[test]
 fn a_guide_that_is_too_stiff_or_late_shakes_a_fingertip_and_the_servo_makes_it_soft() {
     for (stiffness, delay) in [(2000.0, 0), (2000.0, 1), (400.0, 4), (100.0, 16)] {
@@ -141,7 +141,7 @@ fn a_guide_that_is_too_stiff_or_late_shakes_a_fingertip_and_the_servo_makes_it_s
     }
 }
 
-/// A wavy path, m by m.
+/// Point of a wavy path, m.
 fn wave(x: f64) -> DVec3 {
     DVec3::new(x, 0.01 * sin(60.0 * x), 0.0)
 }
@@ -152,8 +152,8 @@ fn piece(x: f64, stiffness: f64) -> Guide {
     guide(points.collect(), stiffness)
 }
 
-/// Mean distance from the path, m, of a hand that wants to be 4 mm aside of it and goes along at .1 m/s; how far its tip
-/// moves, peak to peak, in half a second after it has stopped, m; and the largest force, N.
+/// Mean distance from the path, m, of a hand that aims 4 mm beside it and moves along at .1 m/s; movement of its tip,
+/// peak to peak, in half a second after it has stopped, m; and the largest force, N.
 fn stroke(hand: Hand, stiffness: f64) -> [f64; 3] {
     let limits = Limits {
         max_stiffness_n_m: 500.0,
@@ -199,6 +199,6 @@ fn a_guided_hand_stays_nearer_to_the_path_and_comes_to_rest() {
         assert_eq!(free[2], 0.0);
         assert!(guided[0] < 0.85 * free[0], "{hand:?}: {guided:?} {free:?}");
         assert!(guided[1] < STILL_M && guided[2] <= 0.6 + 1e-9, "{guided:?}");
-        // Along the path nobody is pulled: it stops where a free one does, but for what the bends do.
+        // Nothing pulls along the path: the hand stops where a free one does, apart from the effect of bends.
     }
 }

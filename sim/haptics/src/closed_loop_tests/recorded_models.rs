@@ -1,4 +1,4 @@
-//! Contact models that were recorded with one hand, felt by it again and by others: at every stiffness, rate and loss of the
+//! Contact models recorded with one hand and replayed to it and to others: at every stiffness, rate and loss of the
 //! grid the force stays within the servo's bounds, and hands come to rest.
 
 use glam::{DQuat, DVec3};
@@ -16,21 +16,20 @@ use crate::servo::limits::Limits;
 use crate::servo::tick::Sender;
 
 const TICKS: usize = 3000;
-/// The hand presses on here, and then holds still.
+/// Ticks in which the hand presses on and then holds still.
 const STILL_TICKS: std::ops::Range<usize> = 2500..TICKS;
 
-/// What the models of a recording are.
+/// Kind of a recorded model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
-    /// A wall.
     Wall,
-    /// A brush whose stiffness follows how the recorded hand pressed.
+    /// A brush whose stiffness follows the recorded hand's pressure.
     Brush,
-    /// A force linearised where the recorded hand was.
+    /// A force linearised at the recorded hand's position.
     Local,
 }
 
-/// A hand's wishes: it strokes and presses, some time later and some lengths deeper than another.
+/// Targets of a hand: it strokes and presses, with a lag and an additional depth.
 #[derive(Clone, Copy, Debug)]
 struct Wish {
     late_s: f64,
@@ -81,16 +80,16 @@ fn felt(kind: Kind, stiffness: f64, place: DVec3) -> ContactModel {
         },
     };
     ContactModel {
-        // The plane of a canvas that is worked on lies where the brush meets it.
+        // The plane of a moving canvas passes through the contact of the brush.
         plane_point_m: [0.0, 0.0, 2e-4 * sin(40.0 * place.x)],
-        // Six of the longest periods, as in the grid: what is lost shall not fade.
+        // Six of the longest periods, as in the grid, so that lost models do not fade.
         time_to_live_ns: 200_000_000,
         recovery_ns: 15_000_000,
         ..model(law)
     }
 }
 
-/// How a hand and its models went.
+/// Outcome of a hand and its models.
 #[derive(Debug)]
 struct Went {
     models: Vec<(usize, ContactModel)>,
@@ -101,7 +100,7 @@ struct Went {
     is_faulty: bool,
 }
 
-/// A hand feels the models that come at a tick.
+/// Runs a hand on the models that arrive at each tick.
 fn go(
     hand: usize,
     wish: Wish,
@@ -146,8 +145,8 @@ fn record(hand: usize, kind: Kind, stiffness: f64) -> Went {
     })
 }
 
-/// A recording that is felt again: its models come at a given rate, late by up to a share of their period and as often
-/// lost.
+/// Replay of a recording: its models arrive at a given rate, delayed by up to a share of their period, and are lost at
+/// that share too.
 fn replay(
     recorded: &Went,
     hand: usize,
@@ -221,7 +220,7 @@ fn the_recorded_hand_feels_what_it_felt() {
     }
 }
 
-/// The seeded fault: were a servo without bounds within them, the test above could not fail.
+/// The seeded fault: a servo without bounds must exceed them.
 #[test]
 fn a_servo_without_bounds_is_found_out() {
     let unbounded = Limits {

@@ -1,5 +1,5 @@
-//! A device whose frame is smaller or larger than the desk: the servo works on the desk, the hand is
-//! where the device is, and shakes or is still as one that is not scaled.
+//! A device whose frame is smaller or larger than the desk. The servo works on the desk, the hand is at the device, and
+//! stability is that of an unscaled device.
 
 use glam::DVec3;
 use maulstick_types::haptics::ForceLaw;
@@ -14,23 +14,22 @@ use crate::servo::tick::Sender;
 
 const SCALES: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 
-/// What becomes of the desk's force on its way to the hand.
+/// Conversion of the desk's force to the device's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way {
-    /// It is divided by the scale.
+    /// Divided by the scale.
     Scaled,
-    /// It is handed on as it is.
     AsItIs,
 }
 
-/// How a run went.
+/// Outcome of a run.
 #[derive(Clone, Copy, Debug)]
 struct Outcome {
     /// Movement of the hand in the last half second, peak to peak, m of the device.
     wobble_m: f64,
     /// Largest force on the hand, N.
     most_n: f64,
-    /// Largest change of it within a tick, N.
+    /// Largest change of the force within a tick, N.
     jump_n: f64,
 }
 
@@ -120,7 +119,7 @@ fn a_wall_beyond_the_bound_shakes_a_fingertip_at_every_scale_alike() {
     }
 }
 
-/// The seeded fault: a force that is not divided by the scale is a wall as many times as stiff.
+/// The seeded fault: a force not divided by the scale is a wall as many times as stiff.
 #[test]
 fn a_force_that_is_handed_on_as_it_is_shakes_a_fingertip_at_four_times() {
     let run = |limits, way| press(Hand::FINGERTIP, 300.0, 4.0, limits, way).wobble_m;
@@ -130,7 +129,7 @@ fn a_force_that_is_handed_on_as_it_is_shakes_a_fingertip_at_four_times() {
     assert!(scaled < STILL_M && as_it_is > 1e-3, "{scaled} {as_it_is}");
 }
 
-/// The other seeded fault: limits that are not those of the desk give a hand another force.
+/// The other seeded fault: limits that are not the desk's give a hand another force.
 #[test]
 fn limits_that_are_not_scaled_are_those_of_another_device() {
     let hand = Hand::PEN_GRIP;

@@ -1,9 +1,8 @@
-//! The servo presses a device and a hand onto a wall: what shakes and what does not.
+//! Stability of a device and a hand pressed onto a wall.
 //!
-//! A soft press hides a fault, as Coulomb friction holds the tip: here the wall jumps, so each run
-//! has been kicked. Bounds are those of Colgate and Schenkel (1997) with the delay of Gil et al.
-//! (2009): a wall of stiffness K, felt `delay` late at a period T, needs damping
-//! b > K·(T/2 + delay).
+//! A soft press hides a fault, as Coulomb friction holds the tip: here the wall jumps, so each run has been kicked.
+//! Bounds are those of Colgate and Schenkel (1997) with the delay of Gil et al. (2009): a wall of stiffness K with a
+//! delay `delay` at a period T needs damping b > K·(T/2 + delay).
 
 use glam::DVec3;
 use maulstick_types::haptics::ForceLaw;
@@ -27,7 +26,7 @@ struct Press {
     stiffness: f64,
     /// Ticks from the reading to the force.
     delay: usize,
-    /// Ticks between two settings of the force, as if it crossed a network.
+    /// Ticks between two settings of the force, as over a network.
     hold: usize,
 }
 
@@ -41,8 +40,8 @@ impl Press {
         Contact::new(&law).expect("a model")
     }
 
-    /// For 1.4 s the wall jumps by 3 mm every 100 ms. How far the tip moves, peak to peak, in the
-    /// last half second of five, m.
+    /// For 1.4 s the wall jumps by 3 mm every 100 ms. Movement of the tip, peak to peak, in the last half second of
+    /// five, m.
     fn wobble(&self) -> f64 {
         let mut servo = Servo::new(unguarded());
         let mut plant = Plant::omni(self.hand, DVec3::new(0.0, 0.0, 0.025));
@@ -104,8 +103,7 @@ fn within_the_bound_of_its_damping_a_wall_is_still_at_any_delay() {
     }
 }
 
-/// The seeded faults: were these still, the tests above could not fail. A hand with damping hides
-/// them.
+/// The seeded faults: if these were still, the tests above could not fail. A hand with damping hides them.
 #[test]
 fn beyond_the_bound_or_with_a_force_sent_over_a_network_a_fingertip_shakes() {
     let press = |stiffness, delay, hold| Press {
@@ -137,8 +135,8 @@ fn beyond_the_bound_or_with_a_force_sent_over_a_network_a_fingertip_shakes() {
     );
 }
 
-/// A hand strokes a round brush of 25 mm over linen for two seconds and stops: how far the tip moves,
-/// peak to peak, in the last half second of three, m; `by` multiplies the force of its curve.
+/// A hand strokes a round brush of 25 mm over linen for two seconds and stops: movement of the tip, peak to peak, in
+/// the last half second of three, m; `by` multiplies the force of its curve.
 fn stroke(hand: Hand, by: f64, limits: Limits) -> f64 {
     let knots = tuples().into_iter().map(|mut knot| {
         knot.force_n *= by;
@@ -186,7 +184,7 @@ fn a_brush_that_has_stroked_over_linen_comes_to_rest_in_every_hand() {
             assert!(wobble < STILL_M, "{hand:?} {by}: {wobble} m");
         }
     }
-    // The seeded fault: a wall of 2.5 N in the place of the brush, and nobody to stop what shakes.
+    // The seeded fault: a wall of 2.5 N in place of the brush, without the guard against shaking.
     let unguarded = Limits {
         slew_n_s: 1e6,
         ..unguarded()

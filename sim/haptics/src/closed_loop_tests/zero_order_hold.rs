@@ -1,4 +1,4 @@
-//! Energy of the zero-order hold: what a ridge that is felt in samples gives to a hand that is drawn across it.
+//! Energy of the zero-order hold: given by a sampled ridge to a hand that is drawn across it.
 //!
 //! A force −∇U that is held over a period T is T/2 late in the mean. To first order in T it gives
 //!
@@ -29,20 +29,20 @@ const MOST_N_M: f64 = 500.0;
 const TOUCH_S: f64 = 0.6;
 const STILL_S: f64 = 3.1;
 const END_S: f64 = 4.1;
-/// Encoders that read every place.
+/// Step of encoders that read exactly, m.
 const NO_STEP_M: f64 = 1e-12;
-/// Viscous friction given to the observer so that it sees nothing, N·s/m.
+/// Viscous friction that blinds the observer, N·s/m.
 const BLIND: f64 = 1e9;
 
 /// A hand that is drawn across a ridge of .9 mm, 4 mm to each side, and holds still on its flank.
 #[derive(Clone, Copy, Debug)]
 struct Crossing {
     hand: Hand,
-    /// T, s.
+    /// Period T of the servo, s.
     period_s: f64,
-    /// Viscous friction of the device, N·s/m: its only loss.
+    /// Viscous friction of the device, its only loss, N·s/m.
     damping: f64,
-    /// That which the observer takes it to have, N·s/m.
+    /// Viscous friction assumed by the observer, N·s/m.
     told_damping: f64,
     /// Step of the encoders, m.
     step_m: f64,
@@ -50,14 +50,14 @@ struct Crossing {
     late: usize,
 }
 
-/// Energy that hand and device's mass were given beyond the potential of the ridge, J.
+/// Energy given to the hand and the device's mass beyond the potential of the ridge, J.
 #[derive(Clone, Copy, Debug)]
 struct Gain {
-    /// At the end.
+    /// At the end, J.
     end_j: f64,
-    /// From some time on, at most.
+    /// Greatest rise after some time, J.
     rise_j: f64,
-    /// The first-order energy of the hold over the same way, without the device's friction.
+    /// First-order energy of the hold over the same path, without the device's friction, J.
     hold_j: f64,
 }
 
@@ -105,7 +105,7 @@ impl Crossing {
             let (from, before_j) = (plant.true_position(), plant.given_j() + plant.kinetic_j());
             plant.advance(under_way[0], target(s), self.period_s);
             let to = plant.true_position();
-            // Simpson's rule for the potential, central differences for H along the way.
+            // Simpson's rule for the potential, central differences for H along the path.
             let way = to - from;
             let [behind, between, ahead] = [from, from.midpoint(to), to].map(force);
             let work_j = (behind + between * 4.0 + ahead).dot(way) / 6.0;
@@ -156,7 +156,7 @@ fn the_energy_of_the_hold_is_of_first_order_in_the_period() {
             assert!((gain.end_j / gain.hold_j - 1.0).abs() < 0.01, "{gain:?}");
             gain.end_j
         });
-        // A fingertip without damping is driven by it, so its way is another at each period.
+        // A fingertip without damping is driven by it, so its path differs at each period.
         if hand != Hand::FINGERTIP {
             assert!((gains[0] / gains[1] - 2.0).abs() < 0.1, "{gains:?}");
             assert!((gains[0] / gains[3] - 10.0).abs() < 0.5, "{gains:?}");
@@ -164,7 +164,7 @@ fn the_energy_of_the_hold_is_of_first_order_in_the_period() {
     }
 }
 
-/// The seeded fault and its known answer: a force that is a period late besides is 3·T/2 late in the mean.
+/// The seeded fault and its known answer: a force one more period late is 3·T/2 late in the mean.
 #[test]
 fn a_force_that_is_a_period_late_gives_three_times_as_much() {
     for hand in [Hand::PEN_GRIP, Hand::ARM] {
@@ -231,7 +231,7 @@ fn the_observer_takes_back_what_the_device_leaves_of_it() {
                 seen.end_j * 1e6
             );
             assert!(seen.end_j <= 0.0, "{seen:?}");
-            // What is given in a step is there for a step.
+            // Energy given in a step remains for a step.
             assert!(
                 seen.rise_j < 0.05 * unseen.rise_j || step_m > NO_STEP_M,
                 "{seen:?} {unseen:?}"

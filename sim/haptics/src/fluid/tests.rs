@@ -1,4 +1,4 @@
-//! What is accepted, how it follows the hand, and how one gives way to the next.
+//! Acceptance of messages, drag at the hand's velocity, and the transition between forces.
 
 use maulstick_types::Pose;
 use proptest::prelude::*;
@@ -47,7 +47,7 @@ fn drag_follows_the_hand_whatever_velocity_it_was_computed_for() {
     assert_eq!(stage.force(DVec3::X, FADE_S), DVec3::ZERO);
 }
 
-/// A message that is held past its period keeps its drag and loses its push.
+/// A message held past its period keeps its drag and loses its push.
 #[test]
 fn paint_that_is_not_heard_of_any_more_drags_and_no_longer_pushes() {
     let mut moving = drag(0.3, DVec3::X * 0.1);
@@ -70,13 +70,13 @@ fn what_would_push_the_hand_or_is_no_number_is_refused() {
         Fluid::new(&message, 1.0).err()
     };
     assert_eq!(told(|_| {}), None);
-    // The seeded fault: by the printed, inward normal drag pushes.
+    // The seeded fault: with the printed, inward normal, drag pushes.
     let inward = told(|m| {
         m.wrench = m.wrench.map(|f| -f);
         m.jacobian = m.jacobian.map(|row| row.map(|part| -part));
     });
     assert!(inward.is_some_and(|told| told.contains("push")));
-    // A turn of the force by velocity brakes nothing and drives nothing; a shear drives.
+    // An antisymmetric Jacobian neither brakes nor drives; a shear drives.
     assert_eq!(
         told(|m| (m.jacobian[0][1], m.jacobian[1][0]) = (0.9, -0.9)),
         None

@@ -1,27 +1,27 @@
 //! The piecewise cubic of Baxter 2004, fig. 8.2: five tuples of depth, force and slope make four
 //! segments, compression, buckling, bending and the handle that meets the canvas.
 //!
-//! Depth counts in fractions of l_p. The compressive part is the first two tuples: their force and
-//! slopes are multiplied by γ of eq. 8.2 as the brush is held now,
+//! Depth is a fraction of l_p. The compressive part is the first two tuples: their force and slopes are multiplied by γ
+//! of eq. 8.2 for the current angle of the brush,
 //!
 //! ```text
 //! γ = cos²(2θ)   |θ| < π/4,   else 0
 //! ```
 //!
-//! With the force alone scaled, as in the text, the first segment would overshoot at γ = 0 and come
-//! down again. A slope counts at most three times that of its segment's chord (Fritsch and Carlson
-//! 1980), so the force never falls with depth, at any angle.
+//! With the force alone scaled, as in the text, the first segment would overshoot at γ = 0 and come down again. A slope
+//! is limited to three times that of its segment's chord (Fritsch and Carlson 1980), so the force never falls with
+//! depth, at any angle.
 
 use maulstick_types::haptics::HermiteKnot;
 
 use super::{Normal, Penetration};
 
-/// Tuples of a curve at most.
+/// Greatest number of tuples of a curve.
 pub const KNOTS: usize = 5;
-/// Slope at the end of a segment by that of its chord at most, for the cubic to rise throughout.
+/// Greatest slope at the end of a segment as a multiple of its chord's, for a monotone cubic.
 const STEEPEST: f64 = 3.0;
 
-/// A tuple as on the wire.
+/// A tuple of the wire format.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Knot {
     depth: f64,
@@ -29,7 +29,7 @@ struct Knot {
     slope_n: f64,
 }
 
-/// The tuples, checked.
+/// Validated tuples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Curve {
     knots: [Knot; KNOTS],
@@ -54,7 +54,7 @@ pub fn angle_factor(cosine: f64) -> f64 {
 struct Segment {
     /// Force at its beginning, N.
     start_n: f64,
-    /// Its length, fractions.
+    /// Length of the segment, fractions of l_p.
     length: f64,
     /// Slope of its chord and at its two ends, N per fraction.
     chord: f64,
@@ -62,13 +62,13 @@ struct Segment {
 }
 
 impl Segment {
-    /// From `start_n` to the next tuple; it rises from `from` to `to` unless that is steeper than
+    /// Segment from `start_n` to the next tuple, with end slopes `from` and `to` where these are below
     /// `most`, N per fraction.
     fn new(start_n: f64, [from, to]: [&Knot; 2], most: f64) -> Self {
         let length = to.depth - from.depth;
         let asked = (to.force_n - from.force_n) / length;
-        // Where the chord comes near the bound the cubic goes over into the chord: no point of it is
-        // steeper than `most`, and nothing jumps as the bound goes with the angle.
+        // As the chord approaches the bound the cubic blends into the chord: no point is steeper than `most`, and the
+        // force stays continuous as the bound changes with the angle.
         let straight = if asked < most {
             (2.0 * asked / most - 1.0).max(0.0)
         } else {
@@ -91,7 +91,7 @@ impl Segment {
         self.start_n + self.chord * self.length
     }
 
-    /// Force and slope at a share `t` of its length.
+    /// Force and slope at the share `t` of its length.
     fn at(&self, t: f64) -> [f64; 2] {
         let ([m0, m1], u) = (self.slopes, 1.0 - t);
         let rise = self.chord * t * t * (3.0 - 2.0 * t) + t * u * (m0 * u - m1 * t);
@@ -101,11 +101,10 @@ impl Segment {
 }
 
 impl Curve {
-    /// Checks tuples.
+    /// Validates tuples.
     ///
-    /// # Errors
-    /// What is wrong: fewer than two or more than five, not from depth 0 and force 0, not in order of
-    /// depth, a force that falls, a negative slope, a number that is not finite.
+    /// # Errors The fault: fewer than two or more than five, not from depth 0 and force 0, not in order of depth, a
+    /// force that falls, a negative slope, a number that is not finite.
     pub fn new(tuples: &[HermiteKnot]) -> Result<Self, &'static str> {
         if !(2..=KNOTS).contains(&tuples.len()) {
             return Err("a Hermite curve has two to five knots");
@@ -138,7 +137,7 @@ impl Curve {
         })
     }
 
-    /// The force in contact; nowhere does it rise faster than `max_stiffness`, N/m.
+    /// Force in contact; its slope is at most `max_stiffness`, N/m.
     #[must_use]
     pub fn normal(&self, penetration: &Penetration, max_stiffness: f64) -> Normal {
         let projected = penetration.projected_m;
@@ -270,8 +269,8 @@ pub(crate) mod tests {
         }
     }
 
-    /// With the force of the second tuple alone scaled, as in the text, the force falls with depth:
-    /// the check of the next test sees it.
+    /// With the force of the second tuple alone scaled, as in the text, the force falls with depth, which the check of
+    /// the next test detects.
     #[test]
     fn with_the_slope_left_as_it_is_the_force_would_fall() {
         let from = Knot {

@@ -7,8 +7,8 @@
 //! f = k₁ + (k₂/l_p)·(d − l_p)      l_p < d
 //! ```
 //!
-//! k₁ and k₂ are newtons: the same force is felt when the handle first meets the plane, whatever the
-//! brush's length and tilt.
+//! k₁ and k₂ are in newtons, so the force when the handle first meets the plane is independent of the brush's length
+//! and tilt.
 
 use super::{Normal, Penetration};
 
@@ -17,12 +17,12 @@ use super::{Normal, Penetration};
 pub struct Linear {
     /// Force when the handle meets the plane, N.
     pub k1_n: f64,
-    /// Further force a head's length below, N.
+    /// Additional force a head's length deeper, N.
     pub k2_n: f64,
 }
 
 impl Linear {
-    /// The force in contact; neither piece is stiffer than `max_stiffness`, N/m.
+    /// Force in contact; neither piece is stiffer than `max_stiffness`, N/m.
     #[must_use]
     pub fn normal(&self, penetration: &Penetration, max_stiffness: f64) -> Normal {
         let (depth, projected) = (penetration.depth_m, penetration.projected_m);

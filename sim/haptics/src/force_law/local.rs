@@ -1,8 +1,7 @@
 //! A force linearised about a pose: f₀ + (∂f/∂x)·(x − x₀).
 //!
-//! Of the derivative the symmetric part that pushes back is kept: the rest of it would drive the
-//! hand round and round, and give energy with each turn. Its principal stiffnesses are bounded one
-//! by one.
+//! Only the symmetric positive part of the derivative is kept: the rest would drive the hand in circles, and give
+//! energy with each turn. Its principal stiffnesses are bounded one by one.
 
 use glam::{DMat3, DVec3};
 use maulstick_types::Pose;
@@ -18,10 +17,9 @@ pub struct Local {
 }
 
 impl Local {
-    /// The force `force_n` at `pose` and its derivative by position, row after row, N/m.
+    /// The force `force_n` at `pose` and its derivative by position, row by row, N/m.
     ///
-    /// # Errors
-    /// What is not finite.
+    /// # Errors The value that is not finite.
     pub fn new(
         pose: &Pose,
         force_n: [f64; 3],
@@ -114,7 +112,7 @@ mod tests {
     }
 
     proptest! {
-        /// Round a closed way no energy is given, and away from it the force pushes back.
+        /// A closed path gains no energy, and away from the pose the force pushes back.
         #[test]
         fn no_derivative_gives_energy(
             rows in prop::array::uniform3(prop::array::uniform3(-500.0..500.0f64)),
@@ -134,7 +132,7 @@ mod tests {
         }
     }
 
-    /// The seeded fault: the curl that is left out would have given energy.
+    /// The seeded fault: with its curl the derivative would give energy.
     #[test]
     fn a_derivative_with_curl_would_give_energy() {
         let curl = DMat3::from_cols_array_2d(&[[0.0, 100.0, 0.0], [-100.0, 0.0, 0.0], [0.0; 3]]);

@@ -36,7 +36,7 @@ pub struct Normal {
     pub stiffness_n_m: f64,
 }
 
-/// Normal force by depth, ready for the servo: no allocation in it.
+/// Normal force by depth, ready for the servo: evaluation does not allocate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Law {
     None,
@@ -68,7 +68,7 @@ impl Law {
         }
     }
 
-    /// Normal force of a law that goes by depth; it rises by at most `max_stiffness`, N/m.
+    /// Normal force of a law that depends on depth; its slope is at most `max_stiffness`, N/m.
     pub(crate) fn normal(&self, penetration: &Penetration, max_stiffness: f64) -> Normal {
         if penetration.depth_m <= 0.0 {
             return Normal::default();

@@ -1,4 +1,4 @@
-//! Friction opposes motion, and at rest nothing creeps.
+//! Friction opposes motion, and nothing creeps at rest.
 
 use proptest::prelude::*;
 
@@ -16,7 +16,7 @@ proptest! {
     }
 }
 
-/// Known answers: .12 N hold at rest; after half a millimetre of sliding .08 N, and at rest again in 50 ms.
+/// Known answers: .12 N hold at rest; after half a millimetre of sliding .08 N, and again .12 N after 50 ms of rest.
 #[test]
 fn a_hand_at_rest_breaks_away_later_than_one_that_moves() {
     let grip = Grip {
@@ -36,7 +36,7 @@ fn a_hand_at_rest_breaks_away_later_than_one_that_moves() {
     }
     let slid = pulled(4e-3, 2);
     assert!((slid - 0.08).abs() < 1e-9, "{slid}");
-    // A little back, and it sticks: it gives way later again.
+    // A little back, and it sticks: its slip force is higher again.
     assert!((pulled(3.9e-3, 50) - 0.072).abs() < 1e-9);
     assert!((pulled(4.3e-3, 1) - 0.104).abs() < 1e-9);
 }
@@ -49,8 +49,8 @@ const GRIP: Grip = Grip {
 };
 const STEP_S: f64 = 1e-4;
 
-/// Where a mass of 50 g is that is pulled along x for ten seconds, m, after five of them and at the end: by more and more
-/// for two seconds, then by so many newtons; `damping` brakes it, N·s/m.
+/// Position, m, of a mass of 50 g pulled along x for ten seconds, after five of them and at the end; the pull rises for
+/// two seconds, then stays at `pull_n`; `damping` brakes it, N·s/m.
 fn pulled(
     pull_n: f64,
     damping: f64,
@@ -95,7 +95,7 @@ fn a_hand_that_pulls_by_less_than_the_breakaway_does_not_creep_and_by_more_it_sl
     );
 }
 
-/// The seeded fault: friction by velocity alone, as it was, lets the hand creep however gently it pulls.
+/// The seeded fault: with friction by velocity alone the hand creeps however gently it pulls.
 #[test]
 fn friction_without_a_spring_creeps() {
     let mut last = DVec3::ZERO;
@@ -107,8 +107,8 @@ fn friction_without_a_spring_creeps() {
     assert!(end - halfway > 1e-3, "{halfway} {end}");
 }
 
-/// Energy that a hand gets round a circle of 20 mm, J; `keep` is what becomes of the bristles after each step, from the one
-/// place to the other.
+/// Energy that a hand gains round a circle of 20 mm, J; `keep` updates the bristles after each step, from one place to
+/// the next.
 fn given(mut keep: impl FnMut(&mut Stiction, [DVec3; 2])) -> f64 {
     const STEPS: usize = 20_000;
     let mut stiction = Stiction::default();
@@ -130,7 +130,7 @@ fn given(mut keep: impl FnMut(&mut Stiction, [DVec3; 2])) -> f64 {
 
 const RADIUS_M: f64 = 0.02;
 
-/// Round a way friction takes μ·f_n times its length, but for what the bristles store, ½·F²/k.
+/// Along a closed path friction dissipates μ·f_n times its length, except what the bristles store, ½·F²/k.
 #[test]
 fn a_hand_that_goes_round_loses_what_friction_takes_and_gets_nothing() {
     let length = 2.0 * std::f64::consts::PI * RADIUS_M;
@@ -138,7 +138,7 @@ fn a_hand_that_goes_round_loses_what_friction_takes_and_gets_nothing() {
     let stored = 0.5 * 0.1 * 0.1 / 80.0;
     println!("{lost} J, friction {} J, stored {stored} J", -0.1 * length);
     assert!(lost < 0.0 && (lost + 0.1 * length).abs() < 2.0 * stored);
-    // Within reach of the bristles nothing gives way: round a small way nothing is lost either.
+    // Within reach of the bristles nothing slips: a small closed path loses nothing.
     let mut stiction = Stiction::default();
     stiction.follow(DVec3::ZERO, Some(&GRIP), STEP_S);
     let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ZERO].map(|c| c * 5e-4);
@@ -152,7 +152,7 @@ fn a_hand_that_goes_round_loses_what_friction_takes_and_gets_nothing() {
     assert!(round.abs() < 1e-15, "{round} J");
 }
 
-/// The seeded fault: bristles that take hold ahead of the hand drive it.
+/// The seeded fault: bristles that adhere ahead of the hand drive it.
 #[test]
 fn bristles_that_lead_the_hand_would_give_energy() {
     let gained = given(|stiction, [from, to]| {

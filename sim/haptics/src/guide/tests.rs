@@ -35,7 +35,7 @@ const BOUNDS: GuideBounds = GuideBounds {
     reach_m: 0.03,
 };
 
-/// A path with an obtuse bend, an end, and a change of height, which is none within the canvas.
+/// A path with an obtuse bend, an end, and a change of height, which vanishes within the canvas.
 const BENT: [[f64; 3]; 4] = [
     [-0.2, 0.0, 0.0],
     [0.0, 0.0, -0.01],
@@ -64,7 +64,7 @@ fn distance(tip: DVec3) -> f64 {
     least.sqrt()
 }
 
-/// Force at a distance, N: as the module's documentation has it.
+/// Force at a distance, N, by the module's documentation.
 fn force(distance_m: f64) -> f64 {
     let spring = if distance_m > 0.0075 {
         0.6
@@ -78,7 +78,7 @@ fn force(distance_m: f64) -> f64 {
     }
 }
 
-/// Its integral, J.
+/// Integral of the force, J.
 fn potential(distance_m: f64) -> f64 {
     let steps = 2000;
     let step = distance_m / f64::from(steps);
@@ -108,7 +108,7 @@ fn the_force_is_the_gradient_of_its_potential() {
         let found = pull(&guide, tip);
         println!("{tip}: {found}, expected {expected}");
         assert!((found - expected).length() < 2e-4, "{tip}");
-        // The seeded fault: a force toward a point that is behind is no gradient.
+        // The seeded fault: a force toward an earlier nearest point is no gradient.
         let handle = at(tip, DVec3::ZERO);
         let mut behind = guide.first(&handle);
         behind.along -= 0.1;
@@ -130,12 +130,12 @@ fn a_nearest_point_is_followed_along_the_path_and_changes_where_the_distance_fal
     let tip = |x: f64, y: f64| at(DVec3::new(x, y, 0.0), DVec3::ZERO);
     let mut foot = guide.first(&tip(0.01, 0.001));
     assert_eq!(foot.piece, 0);
-    // It goes over to the other leg and is held by the first one.
+    // The hand crosses to the other leg and is held by the first one.
     for step in 0..100 {
         foot = guide.follow(foot, &tip(0.01, 0.001 + 7e-5 * f64::from(step)));
     }
     assert_eq!(foot.piece, 0);
-    // Along the path it goes round.
+    // Along the path the point passes the bend.
     for step in 0..100 {
         foot = guide.follow(foot, &tip(0.01 + 4.5e-4 * f64::from(step), 0.001));
     }

@@ -1,16 +1,16 @@
-//! Heights that no device shakes at: their slope and curvature are bounded.
+//! Heights with bounded slope and curvature, at which no device shakes.
 //!
-//! Steps become ramps beside what is high (the upper envelope under pyramids of the greatest slope, as a bristle lies on
-//! peaks), then binomial filters take the curvature away, as a head does that rests on several millimetres at once; what is
-//! still too sharp is lower. Each of these depends continuously on the heights.
+//! Steps become ramps beside the higher side (the upper envelope under pyramids of the greatest slope, as a bristle
+//! rests on peaks). Binomial filters then reduce the curvature, like a head that rests on several millimetres at once,
+//! and any remaining excess is scaled down. Each of these depends continuously on the heights.
 
 use super::{Heights, SIDE};
 
-/// Slope along each axis at most.
+/// Greatest slope along each axis.
 const SLOPE_MOST: f64 = 0.5;
-/// Curvature at most, 1/m: a ridge of 5 mm may be .5 mm high.
+/// Greatest curvature, 1/m: a ridge of 5 mm may be .5 mm high.
 const CURVATURE_MOST: f64 = 200.0;
-/// Binomial filters at most.
+/// Greatest number of binomial filters.
 const FILTERS: usize = 8;
 
 /// The heights with bounded slope and curvature.
@@ -24,7 +24,7 @@ pub(super) fn smoothed(heights: &Heights, cell_m: f64) -> Heights {
         let softer = filtered(&heights);
         let soft = curvature(&softer, cell_m);
         if soft <= CURVATURE_MOST {
-            // As little of the last filter as does.
+            // The least share of the last filter that suffices.
             let share = (sharp - CURVATURE_MOST) / (sharp - soft);
             return mixed(&heights, &softer, share);
         }
@@ -63,12 +63,12 @@ pub(super) fn curvature(heights: &Heights, cell_m: f64) -> f64 {
     (straight + twists.fold(0.0, f64::max)) / (cell_m * cell_m)
 }
 
-/// The cells beside one; beyond the edge the outermost continues.
+/// Neighbouring cells; beyond the edge the outermost continues.
 fn beside(i: usize) -> [usize; 2] {
     [i.saturating_sub(1), (i + 1).min(SIDE - 1)]
 }
 
-/// The lowest heights that are nowhere lower and fall by `step` a cell at most.
+/// The lowest heights that are nowhere below `heights` and fall by at most `step` a cell.
 fn enveloped(heights: &Heights, step: f64) -> Heights {
     let mut heights = *heights;
     for _ in 0..2 {
@@ -105,7 +105,7 @@ fn turned(heights: &Heights) -> Heights {
     std::array::from_fn(|j| std::array::from_fn(|i| heights[i][j]))
 }
 
-/// `share` of the way from one to the other.
+/// Interpolation between heights by `share`.
 fn mixed(from: &Heights, to: &Heights, share: f64) -> Heights {
     std::array::from_fn(|j| std::array::from_fn(|i| from[j][i] + share * (to[j][i] - from[j][i])))
 }

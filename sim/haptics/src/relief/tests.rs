@@ -1,4 +1,4 @@
-//! The relief against its oracles: splines by recursion, work round closed ways, stiffness by differences.
+//! The relief against its oracles: splines by recursion, work along closed paths, stiffness by differences.
 
 use maulstick_num::{cos, sin};
 use maulstick_types::haptics::{ContactModel, ForceLaw, height_bytes};
@@ -23,7 +23,7 @@ pub(crate) fn patch(height_um: impl Fn(usize, usize) -> i16) -> HeightPatch {
     }
 }
 
-/// Heights without order, to each side by so many µm at most.
+/// Random heights of up to `most_um` µm to either side.
 pub(crate) fn rough(most_um: i16, seed: u64) -> HeightPatch {
     let of = |i: usize, j: usize| {
         let mut state = seed.wrapping_add((i * SIDE + j) as u64 * 77);
@@ -35,7 +35,7 @@ pub(crate) fn rough(most_um: i16, seed: u64) -> HeightPatch {
     patch(of)
 }
 
-/// A ridge along y over the origin, so many µm high.
+/// A ridge along y over the origin, `high_um` µm high.
 pub(crate) fn ridge(high_um: i16) -> HeightPatch {
     patch(|i, _| match i {
         7 | 8 => high_um,
@@ -44,7 +44,7 @@ pub(crate) fn ridge(high_um: i16) -> HeightPatch {
     })
 }
 
-/// An edge along y through the origin, by so many µm.
+/// An edge along y through the origin, `by_um` µm high.
 pub(crate) fn edge(by_um: i16) -> HeightPatch {
     patch(|i, _| if i < SIDE / 2 { 0 } else { by_um })
 }
@@ -115,7 +115,7 @@ proptest! {
         prop_assert!((got.slope - slope).length() < 1e-6, "{} {}", got.slope, slope);
     }
 
-    /// Nothing is stiffer than the device bears, whatever the heights, the law and the device.
+    /// Nothing exceeds the device's stiffness, whatever the heights, the law and the device.
     #[test]
     fn stiffness_stays_within_that_of_the_device(
         most_um in 0i16..=5000,
@@ -136,7 +136,7 @@ proptest! {
     }
 }
 
-/// Stiffness that the hand meets in a direction, N/m, with bristles that have taken hold beside it.
+/// Stiffness in a direction, N/m, with bristles sticking beside the tip.
 fn stiffness_along(contact: &Contact, tip: DVec3, direction: DVec3, bears: f64) -> f64 {
     let mut stiction = Stiction::default();
     let grip = contact.evaluate(&at(tip), bears).grip;
@@ -149,8 +149,7 @@ fn stiffness_along(contact: &Contact, tip: DVec3, direction: DVec3, bears: f64) 
     (force(-e) - force(e)).dot(direction) / (2.0 * e)
 }
 
-/// The seeded fault: were steep heights taken as they are, and the law not made softer, a wall would be stiffer than its
-/// device.
+/// The seeded fault: with unsmoothed heights and an unsoftened law, a wall would be stiffer than its device.
 #[test]
 fn heights_that_are_taken_as_they_are_would_be_too_stiff() {
     let stiffest = |relief: Relief| {
@@ -186,7 +185,7 @@ fn rigid(stiffness_n_m: f64) -> ForceLaw {
     ForceLaw::Rigid { stiffness_n_m }
 }
 
-/// Work of a force on a hand that goes round a way through relief, J, and the sum of its sizes.
+/// Work of a force on a hand along a closed path through relief, J, and the sum of its absolute values.
 fn round(contact: &Contact, felt: impl Fn(ContactForce) -> DVec3) -> [f64; 2] {
     const STEPS: usize = 40_000;
     let place = |i: usize| {
@@ -204,8 +203,8 @@ fn round(contact: &Contact, felt: impl Fn(ContactForce) -> DVec3) -> [f64; 2] {
     [given, gone]
 }
 
-/// Round a closed way relief gives nothing; the seeded faults, a force that is not tilted by the slope and one that is tilted
-/// but of a normal made a unit vector again, do.
+/// Along a closed path relief gains nothing; the seeded faults, a force that is not tilted by the slope and one tilted
+/// along a renormalised normal, do.
 #[test]
 fn round_a_closed_way_relief_gives_nothing() {
     for (name, relief) in [
@@ -228,7 +227,7 @@ fn round_a_closed_way_relief_gives_nothing() {
     }
 }
 
-/// From cell to cell the force continues without a kink; the seeded fault, heights between four cells, has them.
+/// Across cells the force is continuous without a kink; the seeded fault, bilinear heights, has them.
 #[test]
 fn no_force_jumps_or_bends_sharply_between_cells() {
     let relief = relief(&rough(500, 5));
@@ -267,7 +266,7 @@ fn whatever_the_heights_slope_and_curvature_are_bounded() {
             "{relief:?}"
         );
     }
-    // A tall edge is a ramp and not gone.
+    // A tall edge becomes a ramp and does not vanish.
     let edge = relief(&edge(3000));
     let rise = edge.at(DVec3::X * 7e-3, 1e9).height_m - edge.at(DVec3::X * -7e-3, 1e9).height_m;
     assert!(rise > 2e-3, "{rise} m");
@@ -287,12 +286,12 @@ fn a_slope_pushes_the_hand_down_it() {
         felt.force
     );
     assert!((felt.depth_m - 1e-3).abs() < 1e-9);
-    // A millimetre up the slope it is a tenth of that deeper.
+    // A millimetre up the slope the tip is a tenth of that deeper.
     let up = contact.evaluate(&at(DVec3::new(1e-3, 0.0, -1e-3)), 400.0);
     assert!((up.depth_m - 1.1e-3).abs() < 1e-9, "{}", up.depth_m);
 }
 
-/// A hand that presses hard feels the plane, whatever lies on it.
+/// A hand that presses hard feels the plane, whatever its relief.
 #[test]
 fn relief_acts_on_the_first_newton() {
     let contact = Contact::new(&over(ridge(500), rigid(400.0))).expect("a model");

@@ -3,7 +3,7 @@
 use super::limits::Limits;
 use crate::contact::Contact;
 
-/// A model and how long ago it arrived.
+/// A model and its age.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Active {
     pub(super) contact: Contact,
@@ -16,7 +16,7 @@ impl Active {
         self.age_s - self.contact.time_to_live_s
     }
 
-    /// Share that is left of it past its time to live, 1 to 0.
+    /// Share of its force past its time to live, 1 to 0.
     pub(super) fn left(&self, limits: &Limits) -> f64 {
         (1.0 - self.overdue_s().max(0.0) / limits.fade_s).max(0.0)
     }

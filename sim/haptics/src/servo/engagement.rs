@@ -1,19 +1,19 @@
-//! Engagement of a force. Given to a hand that is deep in the canvas it would push it out; so it begins where little is asked
-//! for, and a hand that stays deep feels nothing until it has come up.
+//! Begin of a force. A hand deep in the canvas would be pushed out, so force begins where the models ask for little,
+//! and a hand that stays deep gets none until it has come up.
 
-/// Ticks in which little must be asked for before force begins: one alone may be chance.
+/// Consecutive ticks with a small request before force begins: one alone may be chance.
 pub(super) const CALM_TICKS: u32 = 4;
 
 /// Stage of an engagement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
-    /// Consecutive ticks in which little was asked for.
+    /// Number of consecutive ticks with a small request.
     Waiting(u32),
     /// Force has begun.
     Begun,
 }
 
-/// Whether force has begun, and the ramp by which it comes up.
+/// Stage of the engagement, and the ramp of the force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Engagement {
     stage: Stage,
@@ -22,7 +22,7 @@ pub(super) struct Engagement {
 }
 
 impl Engagement {
-    /// Before any tick.
+    /// State before any tick.
     pub(super) const NEW: Self = Self {
         stage: Stage::Waiting(0),
         ramp_s: 0.0,
@@ -33,17 +33,17 @@ impl Engagement {
         self.stage == Stage::Begun
     }
 
-    /// Waits anew until little is asked for.
+    /// Waits again for a small request.
     pub(super) fn wait_anew(&mut self) {
         self.stage = Stage::Waiting(0);
     }
 
-    /// Begins the ramp anew.
+    /// Restarts the ramp.
     pub(super) fn ramp_anew(&mut self) {
         self.ramp_s = 0.0;
     }
 
-    /// The ramp goes on by a tick.
+    /// Advances the ramp by a tick.
     pub(super) fn age(&mut self, dt: f64) {
         self.ramp_s += dt;
     }
@@ -53,8 +53,8 @@ impl Engagement {
         (self.ramp_s / whole_s).min(1.0)
     }
 
-    /// True until force begins, after a tick in which `asked_n` was asked for: NaN if nothing is known of it. Force
-    /// begins where `most_n` at most is asked for; with a bound that is NaN it never does. The ramp begins with the force.
+    /// True until force begins, after a tick in which `asked_n` was requested, NaN if unknown. Force begins where at
+    /// most `most_n` is requested, never with a bound that is NaN, and starts the ramp.
     pub(super) fn waits(&mut self, asked_n: f64, most_n: f64) -> bool {
         let Stage::Waiting(calm) = self.stage else {
             return false;

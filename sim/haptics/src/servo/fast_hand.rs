@@ -1,15 +1,15 @@
-//! A fast hand: as it nears the speed at which force latches off, it is given less force, and none from nine tenths of that
-//! speed on. So a quick stroke is no fault, and a hand that the device drives is let go.
+//! A fast hand: as it nears the speed at which force latches off, it gets less force, and none from nine tenths of that
+//! speed on. So a quick stroke is no fault, and a hand that the device drives is released.
 //!
-//! In contact the share only falls. A wall that grew hard again while the hand is in it would give more on the way out
-//! than it took on the way in; in the air it costs nothing.
+//! In contact the share only falls: a wall that grew hard again under the hand would return more energy on the way out
+//! than it absorbed on the way in. In the air recovery costs nothing.
 
 use super::oscillation::Touch;
 
-/// Speeds from which force falls and from which there is none, by the speed of the fault.
+/// Speeds from which force falls and from which it is zero, as shares of the fault's speed.
 const FALLS: [f64; 2] = [0.6, 0.9];
 
-/// Share of the force that a fast hand is given.
+/// Share of the force for a fast hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FastHand {
     softness: f64,
@@ -22,7 +22,7 @@ impl Default for FastHand {
 }
 
 impl FastHand {
-    /// The hand has a speed, by that of the fault.
+    /// Updates the share for a speed, as a share of the fault's.
     pub fn follow(&mut self, speed: f64, in_contact: Touch) {
         let [from, to] = FALLS;
         let share = ((to - speed) / (to - from)).clamp(0.0, 1.0);
@@ -32,7 +32,7 @@ impl FastHand {
         };
     }
 
-    /// Force by that asked for, 0 to 1.
+    /// Share of the requested force, 0 to 1.
     #[must_use]
     pub fn softness(&self) -> f64 {
         self.softness
@@ -48,7 +48,7 @@ mod tests {
     use crate::servo::tests::guards::pressed;
     use crate::servo::tests::{DT, handle};
 
-    /// The force at each speed, N, of a hand that stays as deep as it is.
+    /// The force at each speed, N, of a hand at constant depth.
     fn at_speeds(servo: &mut Servo, speeds: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut forces = Vec::new();
         for speed in speeds {
@@ -69,14 +69,14 @@ mod tests {
                 ..Limits::default()
             };
             let mut servo = pressed(limits);
-            // Up to 2 m/s, as fast as 20 m/s² go.
+            // Up to 2 m/s, at 20 m/s².
             let up = |tick: u32| 0.02 * scale * f64::from(tick);
             let forces = at_speeds(&mut servo, (0..100).map(up));
             assert!(forces[..45].iter().all(|force| (force - 1.0).abs() < 1e-9));
             assert!(forces.is_sorted_by(|before, after| before >= after));
             assert!((forces[56] - 0.5).abs() < 0.05, "{}", forces[56]);
             assert!(forces[68..].iter().all(|force| *force == 0.0));
-            // It does not come back under a hand that is in the wall, and does in the air.
+            // The share does not recover while the hand is in the wall, and does in the air.
             let slower = at_speeds(&mut servo, (0..100).rev().map(up));
             assert!(slower.iter().all(|force| *force == 0.0));
             servo.step(&handle(-0.001), DT);
@@ -85,7 +85,7 @@ mod tests {
         }
     }
 
-    /// Work done on a hand that goes 7 mm into a wall and out again, less what the device's own friction takes, J.
+    /// Work done on a hand that goes 7 mm into a wall and out again, less the losses to the device's own friction, J.
     fn in_and_out(in_m_s: f64, out_m_s: f64) -> f64 {
         let mut servo = pressed(Limits::default());
         for _ in 0..20 {

@@ -5,9 +5,9 @@
 pub enum Fault {
     /// A reading or a force was not a number.
     NotANumber,
-    /// The hand was faster than any hand is, with force on it.
+    /// The hand was faster than a human hand, with force on it.
     TooFast,
-    /// It kept shaking, however soft the force was made.
+    /// The hand kept shaking at the softest force.
     Oscillation,
     /// The force state of an earlier servo could not be read.
     UnknownState,
@@ -18,7 +18,7 @@ impl std::fmt::Display for Fault {
         f.write_str(match self {
             Self::NotANumber => "a reading or a force was not a number",
             Self::TooFast => "the hand was faster than its limit",
-            Self::Oscillation => "the hand shook, however soft the force was made",
+            Self::Oscillation => "the hand kept shaking at the softest force",
             Self::UnknownState => "the saved force state cannot be read, so force is switched off",
         })
     }

@@ -1,8 +1,8 @@
-//! Guidance of the hand: the newest guide, its ageing, and the guards that a contact's force has too.
+//! Guidance of the hand: the newest guide, its ageing, and the same guards as for a contact's force.
 //!
-//! A guide acts beside the contact models, and each begins by itself. Its force follows the hand as fast as its stiffness
-//! allows. Any faster change (a new piece of path, a nearest point that changes, another strength) is a correction, which
-//! shrinks to nothing slowly enough to be no knock.
+//! A guide acts beside the contact models, and each engages separately. Its force follows the hand as fast as its
+//! stiffness allows. Any faster change (a new piece of path, a change of the nearest point, another strength) becomes a
+//! correction, which shrinks to zero without a knock.
 
 use glam::DVec3;
 
@@ -14,9 +14,9 @@ use super::tick::Sender;
 use crate::contact::HandleState;
 use crate::guide::{Foot, Guide, GuideBounds, Pull};
 
-/// Time in which a correction as large as the largest guiding force shrinks to nothing, s.
+/// Time in which a correction as large as the largest guiding force shrinks to zero, s.
 const RECOVERY_S: f64 = 0.2;
-/// A guide that asks for less does not hold the hand, by the force below which forces begin.
+/// Force below which a guide does not hold the hand, as a share of the engagement's bound.
 const LITTLE: f64 = 0.1;
 
 /// The guide of a servo.
@@ -25,20 +25,20 @@ pub(super) struct Guidance {
     share: f64,
     active: Option<Active>,
     arrived: Option<Guide>,
-    /// Part of the previous force that is still to fade, N.
+    /// Part of the previous force that still fades, N.
     correction: DVec3,
     engagement: Engagement,
     oscillation: Oscillation,
     fast_hand: FastHand,
 }
 
-/// A guide, where the hand is at it, and how long ago it arrived.
+/// A guide, the hand's nearest point on it, and its age.
 #[derive(Clone, Copy, Debug)]
 struct Active {
     guide: Guide,
     foot: Foot,
     age_s: f64,
-    /// Force that it asked for at the last tick, and the hand's place then.
+    /// Force that it requested at the last tick, and the hand's place then.
     asked: Pull,
     position: DVec3,
 }
@@ -55,7 +55,7 @@ pub(super) struct Guiding {
 }
 
 impl Active {
-    /// Follows the hand, with a share of the guide's force.
+    /// Tracks the hand, with a share of the guide's force.
     fn follow(&mut self, handle: &HandleState, bounds: &GuideBounds, share: f64) {
         self.foot = self.guide.follow(self.foot, handle);
         let pull = self.guide.pull(self.foot, handle, bounds);
@@ -88,7 +88,7 @@ impl Guidance {
         self.arrived = Some(guide);
     }
 
-    /// Share of the guides' force that is given.
+    /// Sets the share of the guides' force that is applied.
     pub(super) fn set_share(&mut self, share: f64) {
         self.share = share;
     }
@@ -102,12 +102,12 @@ impl Guidance {
         };
     }
 
-    /// The force engages anew.
+    /// Makes the force engage anew.
     pub(super) fn engage_anew(&mut self) {
         self.engagement.wait_anew();
     }
 
-    /// The ramp begins anew.
+    /// Restarts the ramp.
     pub(super) fn ramp_anew(&mut self) {
         self.engagement.ramp_anew();
     }
@@ -117,7 +117,7 @@ impl Guidance {
         self.fading(limits) > 0.0
     }
 
-    /// Share that is left of the guide past its time to live; 0 without one.
+    /// Share of the guide's force past its time to live; 0 without a guide.
     fn fading(&self, limits: &Limits) -> f64 {
         self.active.map_or(0.0, |active| {
             let overdue_s = (active.age_s - active.guide.time_to_live_s).max(0.0);
@@ -125,7 +125,7 @@ impl Guidance {
         })
     }
 
-    /// Force that the guide of the last tick asks for at the hand's place now, N, before its factor.
+    /// Force that the last tick's guide requests at the hand's current place, N, before its factor.
     pub(super) fn asked(&self, handle: &HandleState, limits: &Limits) -> DVec3 {
         let Some(active) = &self.active else {
             return DVec3::ZERO;
@@ -135,7 +135,7 @@ impl Guidance {
         pull.conservative * self.share + self.correction
     }
 
-    /// The ramp and the correction continue by a tick, and the guide ages by all the time that has passed.
+    /// Advances the ramp and the correction by a tick, and the guide's age by the whole time passed.
     pub(super) fn age(&mut self, limits: &Limits, dt: f64, passed_s: f64) {
         self.engagement.age(dt);
         if let Some(active) = &mut self.active {
@@ -150,13 +150,15 @@ impl Guidance {
             self.correction.length(),
             limits.guide.force_n * (dt / RECOVERY_S),
         );
-        self.correction = match size > shrunk {
-            true => self.correction * ((size - shrunk) / size),
-            false => DVec3::ZERO,
+        self.correction = if size > shrunk {
+            self.correction * ((size - shrunk) / size)
+        } else {
+            DVec3::ZERO
         };
     }
 
-    /// Follows the hand along the newest guide; `given` is the servo's force, N. True if the hand shakes, however soft the guide was made.
+    /// Tracks the hand along the newest guide; `given` is the servo's force, N. True if the hand shakes at the softest
+    /// guide.
     pub(super) fn follow(
         &mut self,
         handle: &HandleState,
@@ -194,26 +196,27 @@ impl Guidance {
         let Some(Active { asked, .. }) = self.active else {
             return false;
         };
-        // From the largest force one way to the largest the other way.
+        // From the largest force to the largest opposite one.
         self.correction = (self.correction - change).clamp_length_max(2.0 * bounds.force_n);
         let touch = if self.engagement.has_begun() && self.holds(limits) {
             Touch::Contact
         } else {
             Touch::Air
         };
-        // A hand that was let go feels the guide again from the path on, as it would feel a wall.
+        // A released hand gets the guide's force again from the path on, like that of a wall.
         let speed = handle.velocity.length() / limits.max_speed_m_s;
         self.fast_hand.follow(speed, touch);
         // Without force no device shakes it.
-        let touch = match given == DVec3::ZERO {
-            true => Touch::Air,
-            false => touch,
+        let touch = if given == DVec3::ZERO {
+            Touch::Air
+        } else {
+            touch
         };
         self.oscillation
             .watch(asked.left_m, limits.oscillation_m, touch, dt)
     }
 
-    /// True while the guide asks for a force that is felt.
+    /// True while the guide requests a noticeable force.
     pub(super) fn holds(&self, limits: &Limits) -> bool {
         let is_held =
             |active: Active| active.asked.conservative.length() > LITTLE * limits.engage_n;
@@ -227,9 +230,10 @@ impl Guidance {
             return Guiding::default();
         };
         let asked = active.asked.conservative + self.correction;
-        let asked_n = match active.age_s > active.guide.time_to_live_s {
-            true => f64::NAN,
-            false => asked.length(),
+        let asked_n = if active.age_s > active.guide.time_to_live_s {
+            f64::NAN
+        } else {
+            asked.length()
         };
         if self.engagement.waits(asked_n, limits.engage_n) {
             self.correction = DVec3::ZERO;

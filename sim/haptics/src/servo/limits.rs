@@ -1,43 +1,43 @@
-//! Bounds of the force, whatever the models ask for.
+//! Bounds of the force, whatever the models request.
 
 use crate::guide::GuideBounds;
 
-/// Stiffness of a guide at most, by the largest of the device: in the canvas it is felt beside a wall as stiff as that.
+/// Greatest stiffness of a guide, as a share of the device's greatest: in the canvas it adds to a wall of that
+/// stiffness.
 const GUIDE_STIFFNESS: f64 = 0.25;
 
-/// The bounds of a servo.
+/// Limits of a servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Largest force, N: the least of the device's nominal and the configured one.
+    /// Largest force, N: the lesser of the device's nominal and the configured one.
     pub max_force_n: f64,
     /// Largest force for warm motors, N.
     pub continuous_force_n: f64,
     /// Largest stiffness, N/m.
     pub max_stiffness_n_m: f64,
-    /// Viscous friction of the device itself, at least, N·s/m: what it takes of the energy that a
-    /// sampled wall gives.
+    /// Least viscous friction of the device itself, N·s/m: it absorbs energy that a sampled wall adds.
     pub damping_n_s_m: f64,
     /// Fastest change of the force, N/s.
     pub slew_n_s: f64,
-    /// Longest lever by which a brush turns the hand, m.
+    /// Longest lever of the brush's torque on the hand, m.
     pub lever_m: f64,
-    /// A hand that is faster than this with force on it is driven by the device, m/s.
+    /// Speed above which a hand with force on it counts as driven by the device, m/s.
     pub max_speed_m_s: f64,
-    /// A shaking hand turns round by at least this much, m.
+    /// Least swing of a shaking hand, m.
     pub oscillation_m: f64,
-    /// Time over which a model past its time to live fades to nothing, s.
+    /// Time over which a model past its time to live fades, s.
     pub fade_s: f64,
-    /// Force comes up first where the models ask for no more than this, N.
+    /// Requested force up to which force may begin, N.
     pub engage_n: f64,
-    /// Time over which force comes up after a start, a fault or another sender, s.
+    /// Time over which force rises after a start, a fault or another sender, s.
     pub engage_s: f64,
-    /// A tick longer than this has stood still: no force, and the ramp anew, s.
+    /// Duration above which a tick gives no force, and the ramp restarts, s.
     pub longest_tick_s: f64,
-    /// After one that is longer than this too, force waits for a hand that has come up, s.
+    /// Duration of a tick above which force also waits for a hand that has come up, s.
     pub standstill_s: f64,
     /// Time without contact after which the amplifiers go off, s.
     pub idle_s: f64,
-    /// Bounds of a guide of a device that is strong and stiff enough.
+    /// Bounds of a guide on a strong and stiff enough device.
     pub guide: GuideBounds,
 }
 
@@ -60,7 +60,7 @@ impl Default for Limits {
             idle_s: 60.0,
             guide: GuideBounds {
                 stiffness_n_m: 100.0,
-                // As of the passivity controller: more would shake on a velocity in encoder steps.
+                // The passivity controller's bound: more would shake on a velocity in encoder steps.
                 damping_n_s_m: 0.8,
                 force_n: 0.6,
                 reach_m: 0.03,
@@ -70,14 +70,12 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// The same bounds of the device, for a servo in the desk frame where a desk length is `scale`
-    /// device lengths.
+    /// The device's bounds for a servo in the desk frame, where a desk length is `scale` device lengths.
     ///
-    /// The desk's place of the hand is x = s·y, for its place y in the device, and the hand is given
-    /// f(x)/s. So a wall f = −K·x − B·ẋ is on the hand −K·y − B·ẏ: stiffness and damping are the same
-    /// numbers in both frames, and so is every bound of a sampled wall, b > K·T/2. Forces, speeds and
-    /// lengths of the device are s times as large on the desk. Work done on the hand is f/s·dx/s, the
-    /// desk's by s²: where the one is never above 0, the other is not.
+    /// The desk's place of the hand is x = s·y, for its place y in the device, and the hand gets f(x)/s. So a wall f =
+    /// −K·x − B·ẋ becomes −K·y − B·ẏ on the hand: stiffness and damping are the same numbers in both frames, and so is
+    /// every bound of a sampled wall, b > K·T/2. Forces, speeds and lengths of the device are s times as large on the
+    /// desk. Work done on the hand is f/s·dx/s, the desk's divided by s²: both have the same sign.
     #[must_use]
     pub fn scaled(&self, scale: f64) -> Self {
         Self {
@@ -97,7 +95,7 @@ impl Limits {
         }
     }
 
-    /// Bounds of what a guide may ask for.
+    /// Bounds of a guide's force.
     #[must_use]
     pub fn guide_bounds(&self) -> GuideBounds {
         let stiffness_n_m = GUIDE_STIFFNESS * self.max_stiffness_n_m;

@@ -1,5 +1,5 @@
-//! Contact models of a servo: the newest one, the paint, bristles that stick, and the correction that keeps a new model
-//! from being a jump.
+//! Contact models of a servo: the newest one, the paint, sticking bristles, and the correction that makes a new model
+//! continuous.
 
 use glam::DVec3;
 
@@ -9,27 +9,27 @@ use crate::contact::{Contact, ContactForce, HandleState};
 use crate::fluid::{Fluid, FluidStage};
 use crate::friction::{Stiction, ramp};
 
-/// The models that move the hand.
+/// Models of the force.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Models {
     active: Option<Active>,
-    /// Received since the last step.
+    /// Model received since the last step.
     arrived: Option<Contact>,
     fluid: FluidStage,
     stiction: Stiction,
-    /// Part of the force that is left of the models before, N.
+    /// Remaining correction of the force from earlier models, N.
     correction: DVec3,
     /// Speed at which the correction shrinks, N/s.
     correction_speed: f64,
 }
 
 impl Models {
-    /// A new model has arrived.
+    /// Stores a new model.
     pub(super) fn receive(&mut self, contact: Contact) {
         self.arrived = Some(contact);
     }
 
-    /// A new force of paint has arrived.
+    /// Stores a new force of paint.
     pub(super) fn receive_fluid(&mut self, fluid: Fluid, fade_s: f64) {
         self.fluid.receive(fluid, fade_s);
     }
@@ -42,23 +42,23 @@ impl Models {
         };
     }
 
-    /// Lets go of the bristles that stick.
+    /// Releases the sticking bristles.
     pub(super) fn release(&mut self) {
         self.stiction = Stiction::default();
     }
 
-    /// The model that is evaluated.
+    /// Model in use.
     pub(super) fn active(&self) -> Option<&Active> {
         self.active.as_ref()
     }
 
-    /// Part of the force that is left of the models before, N.
+    /// Remaining correction of the force from earlier models, N.
     pub(super) fn correction(&self) -> DVec3 {
         self.correction
     }
 
-    /// The correction shrinks by a tick, and models age by all the time that has passed; true once nothing of the model
-    /// is felt any more.
+    /// Shrinks the correction by a tick, and ages models by the whole time passed; true once the model's force has
+    /// vanished.
     pub(super) fn age(&mut self, limits: &Limits, dt: f64, passed_s: f64) -> bool {
         self.fluid.age(passed_s);
         if let Some(model) = &mut self.active {
@@ -78,7 +78,7 @@ impl Models {
         is_over
     }
 
-    /// Evaluates the model that has arrived, if one has, in the place of the one before.
+    /// Replaces the model by one that has arrived.
     pub(super) fn replace(&mut self, handle: &HandleState, limits: &Limits, dt: f64) {
         let Some(contact) = self.arrived.take() else {
             return;
@@ -107,8 +107,7 @@ impl Models {
         }
     }
 
-    /// Force of the newest model and the paint. Paint is no part of what is conservative, so the observer
-    /// sees all its work.
+    /// Force of the newest model and the paint. Paint is not conservative, so the observer counts all its work.
     pub(super) fn evaluate(&self, handle: &HandleState, limits: &Limits) -> Option<ContactForce> {
         let model = self.active.as_ref()?;
         let most = limits.max_stiffness_n_m;
@@ -118,7 +117,7 @@ impl Models {
         Some(felt)
     }
 
-    /// Bristles that touch stick, and give way to a hand that pulls; without a touch nothing holds it.
+    /// Updates sticking bristles, which slip under a pull; without a touch nothing holds the hand.
     pub(super) fn hold(&mut self, handle: &HandleState, touch: Option<&ContactForce>, dt: f64) {
         let grip = touch.map(|felt| &felt.grip);
         self.stiction.follow(handle.position, grip, dt);

@@ -1,21 +1,20 @@
 //! Thermal model of the motors, which bounds the force: motors bear several times their continuous force
 //! for a moment.
 //!
-//! The rule of the vendor's own example for Phantoms, by time instead of ticks: above .7 the largest
-//! force falls by a part in a thousand each millisecond, to the continuous one; below .5 it comes
-//! back as fast.
+//! The rule of the vendor's own example for Phantoms, by time instead of ticks: above .7 the largest force falls by a
+//! thousandth each millisecond, to the continuous one; below .5 it rises as fast.
 //!
-//! Not every device says how warm its motors are, so the servo reckons too: the heat of the coils goes
-//! with the square of the force, and at the continuous force they end up between warm and cool. The
-//! warmer of the two counts. A Phantom's 3.3 N with .88 N continuous is so borne for five seconds.
+//! Not every device reports its motors' temperature, so the servo also estimates it: the heat of the coils is
+//! proportional to the square of the force, and at the continuous force they settle between warm and cool. The warmer
+//! of the two counts. A Phantom with .88 N continuous thus gives 3.3 N for five seconds.
 
 use super::limits::Limits;
 
-/// Above this the motors are warm.
+/// Temperature above which the motors are warm.
 const WARM: f64 = 0.7;
-/// Below this they have cooled.
+/// Temperature below which they have cooled.
 const COOL: f64 = 0.5;
-/// Relative rate at which the largest force falls and comes back, 1/s.
+/// Relative rate at which the largest force falls and rises, 1/s.
 const RATE: f64 = 1.0;
 
 /// Steady temperature at the continuous force.
@@ -32,7 +31,7 @@ pub struct MotorThermal {
 }
 
 impl MotorThermal {
-    /// Cold motors that bear `peak_n`.
+    /// Cold motors with a peak force of `peak_n`.
     #[must_use]
     pub fn cold(peak_n: f64) -> Self {
         Self {
@@ -42,12 +41,12 @@ impl MotorThermal {
         }
     }
 
-    /// Takes in the temperature of the hottest motor, 0 cold to 1 hot.
+    /// Updates the temperature of the hottest motor, 0 cold to 1 hot.
     pub fn measure(&mut self, temperature: f64) {
         self.temperature = temperature;
     }
 
-    /// `dt` s passed with this force.
+    /// Heats the motors by `dt` s of this force.
     pub fn warm(&mut self, force_n: f64, continuous_n: f64, dt: f64) {
         let load = if continuous_n > 0.0 {
             force_n / continuous_n
@@ -70,14 +69,14 @@ impl MotorThermal {
         }
     }
 
-    /// `dt` s passed with this force, or at rest, or after a fault: the largest force now, N.
+    /// Largest force, N, after `dt` s of this force, at rest, or after a fault.
     pub fn follow(&mut self, force_n: f64, limits: &Limits, dt: f64) -> f64 {
         let dt = if dt.is_finite() { dt.max(0.0) } else { 0.0 };
         self.warm(force_n, limits.continuous_force_n, dt);
         self.cap_n(limits.max_force_n, limits.continuous_force_n, dt)
     }
 
-    /// The largest force, N, `dt` s later.
+    /// Largest force, N, `dt` s later.
     pub fn cap_n(&mut self, peak_n: f64, continuous_n: f64, dt: f64) -> f64 {
         let temperature = self.temperature.max(self.reckoned);
         if temperature > WARM {
@@ -85,7 +84,7 @@ impl MotorThermal {
         } else if temperature < COOL {
             self.cap_n *= 1.0 + RATE * dt;
         }
-        // Written so that limits that are no numbers bound nothing upward.
+        // Written so that limits that are NaN bound nothing upward.
         self.cap_n = self.cap_n.max(continuous_n.min(peak_n)).min(peak_n);
         self.cap_n
     }
@@ -128,7 +127,7 @@ mod tests {
             seconds += 1e-3;
         }
         assert!((seconds - 5.2 - 1.3).abs() < 0.3, "{seconds} s");
-        // At the continuous force they neither warm nor cool; at rest they cool and all comes back.
+        // At the continuous force they neither warm nor cool; at rest they cool and the full force returns.
         for _ in 0..600_000 {
             thermal.warm(0.88, 0.88, 1e-3);
             assert_eq!(thermal.cap_n(3.3, 0.88, 1e-3), 0.88);

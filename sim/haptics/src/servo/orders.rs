@@ -1,4 +1,4 @@
-//! Orders of the painter and of the device: switches, strength, heat.
+//! Commands of the painter and of the device: switches, strength, heat.
 
 use super::Servo;
 use super::oscillation::Oscillation;
@@ -8,7 +8,7 @@ use super::tick::Switch;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Orders {
     switch: Switch,
-    /// The dead man's switch.
+    /// State of the dead man's switch.
     permitted: Switch,
     strength: f64,
 }
@@ -24,7 +24,7 @@ impl Default for Orders {
 }
 
 impl Orders {
-    /// True where there is to be no force.
+    /// True where no force is allowed.
     pub(super) fn are_off(&self) -> bool {
         [self.switch, self.permitted].contains(&Switch::Off)
     }
@@ -36,7 +36,7 @@ impl Orders {
 }
 
 impl Servo {
-    /// Makes the guides' force weaker: a share from 0 to 1.
+    /// Sets the share of the guides' force, 0 to 1.
     pub fn set_guidance(&mut self, share: f64) {
         self.guidance.set_share(share_of(share));
     }
@@ -50,13 +50,13 @@ impl Servo {
         self.engage_anew();
     }
 
-    /// Switches the force off, at once, or on: it engages anew.
+    /// Switches the force off at once, or on with a new engagement.
     pub fn switch(&mut self, switch: Switch) {
         self.orders.switch = switch;
         self.wait();
     }
 
-    /// Follows the dead man's switch: let go, there is no force, and it engages anew.
+    /// Updates the dead man's switch: released, it stops the force, which then engages anew.
     pub fn permit(&mut self, dead_man: Switch) {
         self.orders.permitted = dead_man;
         if dead_man == Switch::Off {
@@ -64,18 +64,18 @@ impl Servo {
         }
     }
 
-    /// Both forces begin only where little is asked for.
+    /// Makes both forces engage anew.
     pub(super) fn wait(&mut self) {
         self.engagement.wait_anew();
         self.guidance.engage_anew();
     }
 
-    /// Makes all force weaker: a share from 0 to 1.
+    /// Sets the share of all force, 0 to 1.
     pub fn set_strength(&mut self, share: f64) {
         self.orders.strength = share_of(share);
     }
 
-    /// Takes in the temperature of the hottest motor, 0 cold to 1 hot.
+    /// Updates the temperature of the hottest motor, 0 cold to 1 hot.
     pub fn measure(&mut self, temperature: f64) {
         self.thermal.measure(temperature);
     }

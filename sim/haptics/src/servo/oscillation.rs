@@ -1,37 +1,35 @@
-//! A hand that shakes against a wall: it turns round along the normal again and again, 10 to 60
-//! times a second, by more than an encoder's step, and does not come to rest as a kicked one does. No
-//! hand dabs that fast, and its tremor is finer.
+//! A hand that shakes against a wall: it reverses along the normal 10 to 60 times a second, by more than an encoder's
+//! step, and does not come to rest as a kicked one does. No hand dabs that fast, and its tremor is finer.
 //!
-//! Each time it is found the force is made softer; soft enough, any device is still. Where it is not,
-//! something else is wrong.
+//! Each detection makes the force softer; soft enough, any device is still. If it is not, there is another fault.
 //!
-//! In contact the force only gets softer, as that of a fast hand does: a wall that grew hard again under a hand would give
-//! more on the way out than it took on the way in. It comes back while the hand is away.
+//! In contact the force only gets softer, as that of a fast hand does: a wall that grew hard again under a hand would
+//! return more energy on the way out than it absorbed on the way in. It recovers while the hand is away.
 
-/// Time between two turns of a shaking hand, s: half a period of 60 Hz and of 10 Hz.
+/// Time between two reversals of a shaking hand, s: half a period of 60 Hz and of 10 Hz.
 const HALF_PERIOD_S: [f64; 2] = [1.0 / 120.0, 1.0 / 20.0];
-/// A hand that comes to rest swings less each time: by less than this share of the swing before.
+/// Ratio of successive swings below which a hand is coming to rest.
 const DYING: f64 = 0.95;
-/// Turns that are shaking, beyond those of a hand that comes to rest: three periods.
+/// Number of reversals that count as shaking, beyond those of a hand that comes to rest: three periods.
 const TURNS: u32 = 6;
-/// A hand that left the surface longer ago than this does not shake against it, s.
+/// Time off the surface after which a hand does not shake against it, s.
 const AWAY_S: f64 = 0.1;
-/// Stiffness after the hand was found shaking, by that before.
+/// Factor on the stiffness after each detection.
 const SOFTER: f64 = 0.7;
-/// Stiffness at least, by that asked for: shaking at this is a fault.
+/// Least share of the requested stiffness; shaking at this is a fault.
 const SOFTEST: f64 = 0.15;
-/// Rate at which stiffness comes back to a hand that is away, 1/s.
+/// Rate at which stiffness recovers while the hand is away, 1/s.
 const RECOVERY: f64 = 0.02;
 
 /// Detector of an oscillating hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Oscillation {
-    /// Stiffness by that asked for.
+    /// Share of the requested stiffness.
     softness: f64,
-    /// Farthest place since the last turn, and the way that led there, 1 or −1.
+    /// Farthest place since the last reversal, m, and the direction toward it, 1 or −1.
     farthest: f64,
     way: f64,
-    /// Where it turned last, and the swing that led there, m.
+    /// Place of the last reversal and the swing toward it, m.
     last_turn: f64,
     swing_m: f64,
     since_turn_s: f64,
@@ -55,8 +53,8 @@ impl Default for Oscillation {
 }
 
 impl Oscillation {
-    /// The hand is at a place along the normal, m, `dt` s later; a turn counts from `turn_m` back.
-    /// True if it shakes at the softest.
+    /// Updates the detector with the hand's place along the normal, m, after `dt` s; a reversal is a return by
+    /// `turn_m`. True if the hand shakes at the softest.
     pub fn watch(&mut self, place: f64, turn_m: f64, in_contact: Touch, dt: f64) -> bool {
         self.since_turn_s += dt;
         self.away_s = match in_contact {
@@ -95,19 +93,19 @@ impl Oscillation {
         (self.farthest, self.way, self.since_turn_s) = (place, -self.way, 0.0);
     }
 
-    /// Stiffness by that asked for.
+    /// Share of the requested stiffness.
     #[must_use]
     pub fn softness(&self) -> f64 {
         self.softness
     }
 }
 
-/// Contact of the head.
+/// Contact of the head with a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
-    /// It does.
+    /// The head touches a surface.
     Contact,
-    /// It does not.
+    /// The head is in the air.
     Air,
 }
 
@@ -163,7 +161,7 @@ mod tests {
     fn a_hand_that_rings_when_it_is_kicked_is_none() {
         let mut oscillation = Oscillation::default();
         for tick in 0..20_000 {
-            // A kick each 300 ms; a twelfth is lost at each turn, as of a fingertip on a stiff wall.
+            // A kick each 300 ms; each reversal loses a twelfth, as for a fingertip on a stiff wall.
             let since = f64::from(tick % 300) * 1e-3;
             let swing = 3e-3 * maulstick_num::exp(-3.5 * since) * sin(120.0 * since);
             assert!(!oscillation.watch(swing, TURN_M, Touch::Contact, 1e-3));

@@ -1,37 +1,35 @@
-//! Passivity observer and controller (Hannaford and Ryu 2002): a wall that is felt in samples gives
-//! more energy than was put into it; the observer sums that up, the controller takes it back by
-//! damping.
+//! Passivity observer and controller (Hannaford and Ryu 2002): a sampled wall returns more energy than was put into it;
+//! the observer sums the excess, the controller removes it by damping.
 //!
-//! The energy of a step is that of the force that was **held** over it times the way gone in it:
+//! The energy of a step is the force that was **held** over it times its motion:
 //!
 //! ```text
 //! E += f(k−1)·(x(k) − x(k−1))
 //! ```
 //!
-//! With the force newly computed at x(k) the leak has the other sign, and the observer never fires.
-//! Less is what the same models, felt without samples, would have given over the way (the mean of
-//! their forces at its two ends), and what the device's own damping took. So a hand that rides on a
-//! moving plane, a plane that rises below a hand at rest and a stiffness that changes give nothing,
-//! and where the device damps more than the samples leak, b > K·T/2, nothing is ever taken from
-//! the hand.
+//! With the force newly computed at x(k) the leak has the other sign, and the observer never fires. Subtracted are the
+//! work of the same models without sampling (the mean of their forces at both ends of the motion), and the loss to the
+//! device's own damping. So a hand that rides on a moving plane, a plane that rises below a hand at rest and a
+//! stiffness that changes count as zero; and where the device damps more than sampling adds, b > K·T/2, the controller
+//! never acts.
 
 use glam::DVec3;
 
-/// Damping of the controller at most, N·s/m: more, on a velocity in encoder steps, would shake itself.
+/// Greatest damping of the controller, N·s/m: more, on a velocity in encoder steps, would shake by itself.
 const MOST_DAMPING: f64 = 0.8;
 
 /// The energy of the steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Passivity {
-    /// Given to the hand beyond what was put in and not yet taken back, J; never negative: what was
-    /// taken too much earlier would mask what is given later.
+    /// Energy given to the hand in excess and not yet removed, J; never negative, so that an earlier surplus of damping
+    /// cannot mask later gains.
     given_j: f64,
     way: DVec3,
 }
 
 impl Passivity {
-    /// A step ends: `held` was on the motors over the `way`, m, in `dt` s; `models` is the mean of
-    /// what the models ask for at its ends, N; `damping` is that of the device, N·s/m.
+    /// Ends a step: `held` was on the motors over the motion `way`, m, in `dt` s; `models` is the mean request of the
+    /// models at its ends, N; `damping` is that of the device, N·s/m.
     pub fn observe(&mut self, held: DVec3, models: DVec3, way: DVec3, damping: f64, dt: f64) {
         let taken = if dt > 0.0 {
             damping * way.length_squared() / dt
@@ -42,7 +40,7 @@ impl Passivity {
         self.way = way;
     }
 
-    /// The force that takes back what was given, N, at the velocity of the step that ended.
+    /// Force that removes the excess, N, at the velocity of the step that ended.
     #[must_use]
     pub fn brake(&self, dt: f64) -> DVec3 {
         let square = self.way.length_squared();
@@ -53,13 +51,13 @@ impl Passivity {
         self.way * (-damping / dt)
     }
 
-    /// Energy given and not yet taken back, J.
+    /// Excess energy not yet removed, J.
     #[must_use]
     pub fn given_j(&self) -> f64 {
         self.given_j
     }
 
-    /// In free motion nothing is owed.
+    /// Resets the excess, in free motion.
     pub fn forgive(&mut self) {
         *self = Self::default();
     }
@@ -72,8 +70,8 @@ mod tests {
     const DT: f64 = 1e-3;
     const WALL: f64 = 500.0;
 
-    /// A hand that goes in and out of a wall at 1 kHz: what is owed at the end; `late` pairs the way
-    /// with the force at its end.
+    /// A hand that goes in and out of a wall at 1 kHz: the excess at the end; `late` pairs the motion with the force at
+    /// its end.
     fn owed(damping: f64, late: bool) -> f64 {
         let mut passivity = Passivity::default();
         let force = |x: f64| DVec3::X * (-WALL * x).max(0.0);
@@ -93,7 +91,7 @@ mod tests {
             .map(|i| 1e-3 * 0.1 * maulstick_num::cos(0.1 * f64::from(i)))
             .map(|way| way * way)
             .sum();
-        // ½·K·Σ(Δx)² over the half of the time that is spent in the wall.
+        // ½·K·Σ(Δx)² over the half of the time spent in the wall.
         let leak = 0.25 * WALL * way;
         assert!(
             (owed(0.0, false) / leak - 1.0).abs() < 0.05,

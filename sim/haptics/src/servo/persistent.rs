@@ -4,7 +4,7 @@ use super::fault::Fault;
 use super::limits::Limits;
 use super::motor_thermal::MotorThermal;
 
-/// State that the next servo over a device takes over.
+/// State for the next servo of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServoMemory {
     /// Latched fault.

@@ -1,4 +1,4 @@
-//! The servo against its promises: ramps, recovery, faults, limits.
+//! Behaviour of the servo: ramps, recovery, faults, limits.
 
 pub(super) mod guards;
 mod guidance;
@@ -15,7 +15,7 @@ use crate::contact::tests::{linear, model};
 pub(super) use crate::closed_loop_tests::DT;
 use crate::closed_loop_tests::HEAD_M;
 
-/// An upright brush whose tip is so deep in the plane z = 0, m.
+/// An upright brush whose tip is `depth` m below the plane z = 0.
 pub(super) fn handle(depth: f64) -> HandleState {
     HandleState::upright(DVec3::Z * (HEAD_M - depth))
 }
@@ -40,7 +40,7 @@ fn begun(limits: Limits) -> Servo {
     servo
 }
 
-/// A servo whose force has come up at `depth`, kept alive by a model a tick.
+/// A servo at full force at `depth`, kept alive by a model a tick.
 fn engaged(depth: f64) -> Servo {
     let mut servo = begun(Limits::default());
     for _ in 0..1000 {

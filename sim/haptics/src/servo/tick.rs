@@ -13,46 +13,46 @@ use super::fault::Fault;
 pub struct Tick {
     /// Latched fault.
     pub fault: Option<Fault>,
-    /// The tick took too long.
+    /// True if the tick took too long.
     pub late: bool,
-    /// The force was cut to its largest size.
+    /// True if the force was cut to its largest value.
     pub clamped: bool,
-    /// The model is past its time to live.
+    /// True if the model is past its time to live.
     pub stale: bool,
-    /// The head touches.
+    /// True if the head touches.
     pub contact: bool,
-    /// Energy was taken back from the hand.
+    /// True if excess energy was removed from the hand.
     pub braked: bool,
-    /// The amplifiers are off: switched off, or nothing was touched for long.
+    /// True if the amplifiers are off: switched off, or long without contact.
     pub resting: bool,
-    /// Force has yet to begin: there is no model, or the hand may be so deep that it would be pushed.
+    /// True until force begins: there is no model, or the hand may be so deep that it would be pushed.
     pub waiting: bool,
-    /// A guide of the hand is alive.
+    /// True if a guide of the hand is alive.
     pub guided: bool,
     /// Torque of the brush about its ferrule, N·m.
     pub torque_n_m: DVec3,
-    /// Largest force now, N.
+    /// Current largest force, N.
     pub cap_n: f64,
-    /// Stiffness along the normal that the model asks for, N/m.
+    /// Stiffness along the normal requested by the model, N/m.
     pub asked_n_m: f64,
-    /// Stiffness along the normal that is given, N/m.
+    /// Stiffness along the normal after its bound, N/m.
     pub stiffness_n_m: f64,
 }
 
 /// Sender of a model, relative to the previous model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sender {
-    /// The same sender.
+    /// The sender of the previous model.
     Same,
-    /// Another sender, or the same one restarted: the force engages anew.
+    /// Another sender, or a restarted one: the force engages anew.
     Another,
 }
 
-/// The painter's switch.
+/// The painter's switch of force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Switch {
-    /// Force is given.
+    /// Force is rendered.
     On,
-    /// No force is given.
+    /// The force is zero.
     Off,
 }

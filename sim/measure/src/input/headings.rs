@@ -11,7 +11,7 @@ pub const RESERVED: [&str; 4] = ["sample", "kind", "thickness_um", "over"];
 /// Most columns of a table: an instrument's readings at each fifth of a nanometre, and some paints.
 pub const MOST_COLUMNS: usize = 2500;
 
-/// Where everything stands; columns are counted from 0.
+/// Columns of the table, counted from 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Headings {
     /// Columns of [`RESERVED`].
@@ -22,7 +22,7 @@ pub struct Headings {
     pub wavelengths: Vec<(usize, f64)>,
 }
 
-/// Checks that a heading can name a paint; otherwise what is wrong, and advice.
+/// Checks that a heading can name a paint; otherwise the fault, and advice.
 fn check_paint(heading: &str) -> Result<(), (String, &'static str)> {
     let help = "choose another name for the paint";
     check_paint_name(heading).map_err(|error| (error.to_string(), help))?;
@@ -36,9 +36,8 @@ fn check_paint(heading: &str) -> Result<(), (String, &'static str)> {
 impl Headings {
     /// Reads the headings of `table`.
     ///
-    /// # Errors
-    /// For a column without a heading or with one that stands twice, for wavelengths that do not
-    /// rise, for more than [`MOST_COLUMNS`], for a paint whose name a paint file cannot hold, and where paints or wavelengths lack.
+    /// # Errors A column without a heading or with a repeated one, wavelengths that are not ascending, more than
+    /// [`MOST_COLUMNS`], a paint whose name does not fit a paint file, or missing paints or wavelengths.
     pub fn of(table: &Table) -> Result<Self, MeasureError> {
         let columns = table.headings().len();
         if columns > MOST_COLUMNS {

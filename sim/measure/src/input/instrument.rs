@@ -15,12 +15,10 @@ use crate::headings::Headings;
 use crate::reading::{Kind, Reading};
 use crate::table::Table;
 
-/// Turns readings of samples and grounds into reflectances, where the table holds raw spectra.
+/// Converts readings of samples and grounds to reflectances, where the table has raw spectra.
 /// `standard` is the reflectance of the standard itself.
 ///
-/// # Errors
-/// Where one of the pair of filter readings is missing, or where a reading that divides is 0, or
-/// where the filter lets through more than there is.
+/// # Errors One of the pair of filter readings is missing, a divisor is 0, or the filter's transmittance exceeds 1.
 pub(crate) fn to_reflectances(
     readings: &mut [Reading],
     table: &Table,

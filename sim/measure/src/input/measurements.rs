@@ -1,4 +1,4 @@
-//! Samples of a table of measurements: what they are made of, and what the instrument read of them.
+//! Samples of a table of measurements: their composition, and the instrument's readings.
 
 use maulstick_tables::{Fault, Row, shown};
 use maulstick_types::nearest::{choice, nearest};
@@ -22,7 +22,7 @@ pub const CHART_WHITE: f64 = 0.8;
 /// Everything that was measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurements {
-    /// Where readings were taken, nm, rising.
+    /// Wavelengths of the readings, nm, ascending.
     pub wavelengths_nm: Vec<f64>,
     /// Names of the paints, in the order of their columns.
     pub paints: Vec<String>,
@@ -43,7 +43,7 @@ pub struct Measurements {
 pub struct Sample {
     /// Its name.
     pub name: String,
-    /// Its line in the file.
+    /// Line of the sample in the file.
     pub line: usize,
     /// Share of each paint; they sum to 1.
     pub shares: Vec<f64>,
@@ -56,9 +56,9 @@ pub struct Sample {
 /// Thickness and ground of a sample.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Layer {
-    /// Hides what is below.
+    /// An opaque layer.
     Opaque,
-    /// A drawdown.
+    /// A film: a drawdown.
     Film {
         /// Thickness, m.
         thickness_m: f64,
@@ -70,7 +70,7 @@ pub enum Layer {
 /// Ground of a drawdown.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ground {
-    /// Something that reflects nothing.
+    /// A ground without reflection.
     Black,
     /// Something bare, of this reading at each wavelength.
     Read(Vec<f64>),
@@ -86,10 +86,9 @@ const KINDS: [(&str, Kind); 6] = [
 ];
 
 impl Measurements {
-    /// Reads a table of measurements; `docs/measuring.md` says what it may hold.
+    /// Reads a table of measurements, described in `docs/measuring.md`.
     ///
-    /// # Errors
-    /// A [`MeasureError`] with line and column.
+    /// # Errors A [`MeasureError`] with line and column.
     pub fn parse(text: &str) -> Result<Self, MeasureError> {
         let table = Table::parse(text)?;
         let headings = Headings::of(&table)?;

@@ -1,8 +1,8 @@
-//! Determinacy: are the readings enough for each paint?
+//! Determinacy: tests whether the readings suffice for each paint.
 //!
-//! The inverse of the normal equations is the covariance of ln K, ln S and of the unit. What counts
-//! to a painter is not K or S but the colour of mixtures: a paint is well determined where its
-//! masstone, and its tints 1:1 and 1:10 with the white, are foretold within a small error.
+//! The inverse of the normal equations is the covariance of ln K, ln S and of the unit. The painter cares about the
+//! colour of mixtures, not about K or S: a paint is well determined where its masstone, and its tints 1:1 and 1:10 with
+//! the white, are predicted within a small error.
 
 use crate::measurements::Measurements;
 use crate::warning::Warning;
@@ -11,10 +11,10 @@ use crate::wavelength::{Observation, PRIOR_SD, Unknowns, Wavelength, gradient};
 /// Shares of a paint in the mixtures with the white by which it is judged.
 const TRIALS: [f64; 3] = [1.0, 0.5, 1.0 / 11.0];
 /// A standard deviation of a trial's reading, root mean square over the spectrum, that is too much.
-const TOO_MUCH: f64 = 0.02;
+const RMS_MAX: f64 = 0.02;
 
-/// The number of unknowns that the readings, rather than what was thought before, determine: the
-/// trace of the hat matrix. `None` where the equations are singular.
+/// The number of unknowns determined by the readings rather than the prior: the trace of the hat matrix. `None` where
+/// the equations are singular.
 #[must_use]
 pub fn effective_unknowns(one: &Wavelength<'_>, at: &Unknowns) -> Option<f64> {
     let free = one.free();
@@ -75,7 +75,7 @@ pub fn warnings(
     for (j, name) in measured.paints.iter().enumerate() {
         let mean = |sum: &f64| (sum / spectrum.len() as f64).sqrt();
         let rms = sums[j].iter().map(mean).fold(0.0, f64::max);
-        if rms > TOO_MUCH {
+        if rms > RMS_MAX {
             let (most, nm) = worst[j];
             warnings.push(Warning::Indeterminate {
                 paint: name.clone(),
@@ -89,7 +89,7 @@ pub fn warnings(
     warnings
 }
 
-/// Standard deviation of the reading of an opaque mixture, 1 at most.
+/// Standard deviation of the reading of an opaque mixture, at most 1.
 fn deviation(
     shares: &[f64],
     one: &Wavelength<'_>,

@@ -1,13 +1,13 @@
 //! Influence of each sample: the fit with one left out.
 //!
-//! Least squares bend to a wrong row, most where few others speak, so that its own residual is small and
-//! those of its neighbours are large. The criterion is how much the sum of squares falls when a row is left
-//! out (Cook 1977, *Detection of influential observation in linear regression*; the likelihood-ratio test
-//! of a row whose mean is shifted). A row is suspect where that fall, per reading, is many times the variance
-//! that the fit without it leaves. The worst is taken out, and the rest are tried again.
+//! Least squares bend to a wrong row, most where there are few others, so that its own residual is small and those of
+//! its neighbours are large. The criterion is the fall of the sum of squares when a row is left out (Cook 1977,
+//! *Detection of influential observation in linear regression*; the likelihood-ratio test of a row whose mean is
+//! shifted). A row is suspect where that fall, per reading, is many times the residual variance without it. The worst
+//! is removed, and the rest are tested again.
 //!
-//! Rows that may be suspect are found by the fall that the linearised fit foretells, r²/(1 − h), and tried by
-//! fits of their own, at some wavelengths: a mistake in shares or thickness shows at all of them.
+//! Candidates are found by the fall that the linearised fit predicts, r²/(1 − h), and tested by separate fits at some
+//! wavelengths: a mistake in shares or thickness shows at all of them.
 
 use maulstick_num::ln;
 
@@ -26,15 +26,15 @@ const TRIED: usize = 40;
 /// Most rows that are accused, and most as a share of all.
 const MOST_SUSPECTS: usize = 5;
 const MOST_SHARE: f64 = 0.1;
-/// Steps of Gauss and Newton at most.
+/// Greatest number of Gauss-Newton steps.
 const STEPS: usize = 20;
-/// A step multiplies K and S by at most this.
+/// Greatest factor on K and S in one step.
 const LARGEST_FACTOR: f64 = 2.0;
 
-/// A row that does not go with the others.
+/// A row that is inconsistent with the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Suspect {
-    /// Its place among the samples.
+    /// Index among the samples.
     pub sample: usize,
     /// Ratio of the other samples' residuals, root mean square, with it and without it.
     pub gain: f64,
@@ -78,7 +78,7 @@ fn worst(fits: &[LeaveOneOut<'_>], samples: usize) -> Option<Suspect> {
         (*sample, without)
     });
     let (sample, without) = tried.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    // One row less than there are.
+    // One row less.
     let freedom: f64 = fits.iter().map(|fit| fit.freedom - 1.0).sum();
     if freedom < 0.5 * fits.len() as f64 {
         return None;
@@ -91,7 +91,7 @@ fn worst(fits: &[LeaveOneOut<'_>], samples: usize) -> Option<Suspect> {
     })
 }
 
-/// The least squares at a wavelength, all rows trusted alike, and what they are without one.
+/// Least squares at a wavelength with all rows weighted equally, and without single rows.
 struct LeaveOneOut<'a> {
     one: Wavelength<'a>,
     at: Unknowns,
@@ -106,7 +106,7 @@ struct LeaveOneOut<'a> {
 impl<'a> LeaveOneOut<'a> {
     fn of(one: &Wavelength<'a>, at: &Unknowns) -> Self {
         let mut one = one.clone();
-        // A wrong row makes the noise look large, and what was thought before too weighty.
+        // A wrong row makes the noise look large, and the prior too weighty.
         one.noise = LEAST_SD;
         one.observations.iter_mut().for_each(|row| row.trust = 1.0);
         Self::settled(one, at.clone())
@@ -160,8 +160,7 @@ impl<'a> LeaveOneOut<'a> {
     }
 }
 
-/// Gauss and Newton's method from a place that is near; what is left of the readings,
-/// squared and summed.
+/// Gauss and Newton's method from a nearby start; the sum of squared residuals of the readings.
 fn least_squares(one: &Wavelength<'_>, mut at: Unknowns) -> (Unknowns, f64) {
     let free = one.free();
     let mut cost = one.cost(&at);

@@ -1,18 +1,16 @@
-//! Links: do samples tie every paint to the reference white?
+//! Links: checks that samples tie every paint to the reference white.
 //!
-//! K and S are ratios (Baxter 2004, § 7.6): paints that share a sample are tied to each other, and
-//! drawdowns of known thickness are tied by the metre. A group of paints that nothing ties to the
-//! white has one factor too many, and the fit is singular.
+//! K and S are ratios (Baxter 2004, § 7.6): paints that share a sample are tied to each other, and drawdowns of known
+//! thickness are tied by the metre. A group of paints without a tie to the white has one undetermined factor, and the
+//! fit is singular.
 
 use crate::error::MeasureError;
 use crate::measurements::{Layer, Measurements};
 
-/// Checks that each paint has a sample and that all groups are tied to the white. A paint that stands
-/// alone, as where only its masstone was measured, passes as long as others are tied: its S is then a
-/// guess, of which the fit warns.
+/// Checks that each paint has a sample and that all groups are tied to the white. A single paint, for example with only
+/// its masstone measured, passes while others are tied: its S is then a guess, of which the fit warns.
 ///
-/// # Errors
-/// For a paint without a sample, or a group of paints that is not tied, with its line.
+/// # Errors A paint without a sample, or a group of paints that is not tied, with its line.
 pub fn check_links(measured: &Measurements, white: usize) -> Result<(), MeasureError> {
     let paints = measured.paints.len();
     for (place, name) in measured.paints.iter().enumerate() {
@@ -23,7 +21,7 @@ pub fn check_links(measured: &Measurements, white: usize) -> Result<(), MeasureE
         {
             let (column, _) = measured.headings.paints[place];
             let what = format!("no sample holds '{name}'");
-            let help = "measure it by itself and mixed with the white, or delete its column";
+            let help = "measure it alone and mixed with the white, or delete its column";
             return Err(MeasureError::new(what, help)
                 .line(measured.heading_line)
                 .column(column, name));

@@ -1,4 +1,4 @@
-//! K and S at a wavelength: the equations, their quadratic programs, and how well readings determine them.
+//! K and S at a wavelength: the equations, their quadratic programs, and their determinacy.
 
 pub mod determined;
 pub mod influence;

@@ -12,7 +12,7 @@ pub struct NormalEquations {
 }
 
 impl NormalEquations {
-    /// No rows yet.
+    /// Equations without rows.
     #[must_use]
     pub fn new(size: usize) -> Self {
         Self {

@@ -11,16 +11,16 @@ use crate::normal::NormalEquations;
 /// Bound of an unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
-    /// This.
+    /// Fixed at a value.
     Fixed(f64),
-    /// This or more.
+    /// Bounded below.
     Above(f64),
-    /// Between these.
+    /// Bounded on both sides.
     Between(f64, f64),
 }
 
-/// The x with the least ½xᵀPx + qᵀx within the bounds, one an unknown; `None` where the solver finds
-/// none, which a positive semidefinite P and finite numbers rule out.
+/// The x with the least ½xᵀPx + qᵀx within the bounds, one an unknown; `None` if the solver fails, which a positive
+/// semidefinite P and finite numbers rule out.
 #[must_use]
 pub fn minimise(equations: &NormalEquations, bounds: &[Bound]) -> Option<Vec<f64>> {
     let n = equations.size;

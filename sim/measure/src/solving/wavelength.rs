@@ -27,9 +27,9 @@ pub const PRIOR_SD: f64 = 1.5;
 pub const UNIT_SD: f64 = 0.5;
 /// Programmes of eq. 7.7 in turn.
 const REWEIGHTINGS: usize = 4;
-/// Steps of Gauss and Newton at most.
+/// Greatest number of Gauss-Newton steps.
 const STEPS: usize = 60;
-/// A step multiplies K and S by at most this.
+/// Greatest factor on K and S in one step.
 const LARGEST_FACTOR: f64 = 4.0;
 
 /// K and S of each paint, relative to the white's S, and that S.
@@ -48,8 +48,8 @@ pub struct Unknowns {
 pub struct Observation<'a> {
     /// Shares of the paints.
     pub shares: &'a [f64],
-    /// d·[`maulstick_optics::paints::WHITE_S_PER_M`] and the ground's internal reflectance; `None` for
-    /// what hides its ground.
+    /// d·[`maulstick_optics::paints::WHITE_S_PER_M`] and the ground's internal reflectance; `None` for an opaque
+    /// sample.
     pub film: Option<(f64, f64)>,
     /// Reading of the instrument.
     pub reading: f64,
@@ -58,7 +58,7 @@ pub struct Observation<'a> {
     pub trust: f64,
 }
 
-/// All that is known at a wavelength.
+/// All inputs at a wavelength.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wavelength<'a> {
     /// The readings.
@@ -132,7 +132,7 @@ impl Wavelength<'_> {
         self.observations.iter().any(|one| one.film.is_some())
     }
 
-    /// Which of ln K, ln S and ln u are unknown.
+    /// Mask of the unknowns among ln K, ln S and ln u.
     #[must_use]
     pub fn free(&self) -> Vec<bool> {
         let n = self.paints();
@@ -142,9 +142,9 @@ impl Wavelength<'_> {
         free
     }
 
-    /// The program of eq. 7.7, solved and weighted anew some times.
+    /// The program of eq. 7.7, solved and reweighted several times.
     ///
-    /// Unknowns are K and S as multiples of what they are thought to be before.
+    /// Unknowns are K and S as multiples of the prior.
     #[must_use]
     pub fn start(&self) -> Unknowns {
         let n = self.paints();
@@ -183,7 +183,7 @@ impl Wavelength<'_> {
         found
     }
 
-    /// Goes on from `found` to the least squares of readings and prior.
+    /// Iterates from `found` to the least squares of readings and prior.
     #[must_use]
     pub fn refine(&self, mut found: Unknowns) -> Unknowns {
         let free = self.free();
@@ -250,7 +250,7 @@ impl Wavelength<'_> {
         equations
     }
 
-    /// (place, weight, ln of how far it is from what it was thought to be).
+    /// Rows of the prior: (index, weight, ln of the ratio to the prior).
     fn prior_rows(&self, at: &Unknowns) -> Vec<(usize, f64, f64)> {
         let n = self.paints();
         let mut rows = Vec::new();

@@ -1,4 +1,4 @@
-//! The example of `docs/measuring.md`: what a 45°/0° hand spectrometer would read of five paints.
+//! The example of `docs/measuring.md`: readings of five paints by a 45°/0° hand spectrometer.
 
 use maulstick_measure::surface::Surface;
 use maulstick_optics::surface::SurfaceCorrection;

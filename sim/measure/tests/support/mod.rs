@@ -16,7 +16,7 @@ use maulstick_optics::{Paint, PaintLibrary, km};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;
 
-/// How readings are disturbed.
+/// Disturbance of readings.
 #[derive(Clone, Copy, Debug)]
 pub enum Noise {
     None,
@@ -120,7 +120,7 @@ impl Bench {
         }
     }
 
-    /// What an instrument without noise reads of a sample.
+    /// Reading of a sample by a noiseless instrument.
     pub fn reading(&self, sample: &Sample, nm: f64) -> f64 {
         let (mut k, mut s) = (0.0, 0.0);
         for (paint, share) in self.paints.iter().zip(&sample.shares) {

@@ -14,7 +14,7 @@ use crate::brush::traits::BrushTraits;
 /// Strips looked at at a time.
 const LANES: usize = 8;
 /// A strip lower than this may touch, cells.
-const NEAR: f32 = 3.0;
+const CONTACT_HEIGHT_CELLS: f32 = 3.0;
 
 /// A solved pose, between two of which the head moves.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,8 +52,7 @@ impl From<WaypointSnapshot> for Waypoint {
 }
 
 impl Waypoint {
-    /// The pose of a solve on a surface, of a brush that is so full (0 to 1); with the brush's
-    /// lengths, not the surface's.
+    /// The pose of a solve on a surface, for a brush of wetness 0 to 1; with the brush's lengths, not the surface's.
     #[must_use]
     pub fn of(solve: &Solve, scale: Scale, wetness: f32) -> Self {
         let mut brush = Rigid::from(&solve.pose);
@@ -65,8 +64,8 @@ impl Waypoint {
         }
     }
 
-    /// The same pose so many m of the brush higher, and back toward its handle: where a hand has it before it sets it down,
-    /// which it does more steeply than the handle lies.
+    /// The same pose `by_m` of the brush higher, and back toward its handle: the pose before setting it down, which is
+    /// steeper than the lean of the handle.
     #[must_use]
     pub fn withdrawn(&self, by_m: f64) -> Self {
         const ASIDE: f64 = 0.7;
@@ -148,8 +147,8 @@ wide! {
     }
 }
 
-/// The cells that strips lower than `height` cells cover in a step that ends at `pose`, from the first up to but not
-/// with the second; `None` if all strips are higher.
+/// The cells covered by strips lower than `height` cells in a step that ends at `pose`, half-open; `None` if all strips
+/// are higher.
 #[must_use]
 pub fn low_bounds(
     head: &Head,
@@ -193,8 +192,8 @@ pub fn low_bounds(
     })
 }
 
-/// Cells that a ribbon reaches beyond its middle line at the end of a step: its position in the middle of the step,
-/// plus its soft edge, seen across at most √2 times as far.
+/// Cells covered by a ribbon beyond its middle line at the end of a step: its position in the middle of the step, plus
+/// its soft edge, up to √2 times as far across.
 #[must_use]
 pub fn border(traits: &BrushTraits) -> i64 {
     let half = 0.5 * traits.step_cells;
@@ -214,7 +213,7 @@ pub fn motion(from: &HeadPose, to: &HeadPose) -> f64 {
         ];
         let deeper = dz.min(0.0);
         let square = (dx * dx + dy * dy).max(deeper * deeper);
-        let near = from.z[i].min(to.z[i]) < NEAR;
+        let near = from.z[i].min(to.z[i]) < CONTACT_HEIGHT_CELLS;
         farthest = farthest.max(if near { square } else { 0.0 });
     }
     f64::from(farthest.sqrt())

@@ -31,11 +31,11 @@ pub struct PaintOnBrush<'a> {
 /// The bristles that take paint up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Half {
-    /// All of them.
+    /// Both halves.
     Both,
-    /// Those toward −x of the brush.
+    /// Half toward −x of the brush.
     Left,
-    /// Those toward +x of the brush.
+    /// Half toward +x of the brush.
     Right,
 }
 
@@ -70,7 +70,7 @@ pub struct BrushLoad {
     held: [Option<Box<Held>>; SLOTS],
     /// Counts of all paints in each texel's film.
     films: Vec<u32>,
-    /// Steps with contact.
+    /// Number of steps with contact.
     steps: u64,
 }
 
@@ -199,8 +199,8 @@ impl BrushLoad {
         counts
     }
 
-    /// Fills a half of a clean brush from tubes: full films, and inside as much as the brush takes,
-    /// divided by the mixture's shares, as chance has it for this seed. Paint with thinner in it clings in a thinner film.
+    /// Fills a half of a clean brush from tubes: full films, and the brush's amount inside, in the mixture's shares,
+    /// with random variation from this seed. Paint with thinner in it clings in a thinner film.
     pub fn fill(
         &mut self,
         head: &Head,
@@ -240,8 +240,8 @@ impl BrushLoad {
         }
     }
 
-    /// A brush of other strips that carries the same paint, spread evenly: in films of `film_full` quanta a texel at most,
-    /// and inside.
+    /// A brush with another number of strips that carries the same paint, spread evenly: in films of at most
+    /// `film_full` quanta a texel, and inside.
     #[must_use]
     pub fn spread(strips: usize, counts: &Counts, film_full: f64) -> Self {
         let mut load = Self::clean(strips);
@@ -259,9 +259,8 @@ impl BrushLoad {
         load
     }
 
-    /// This load on so many strips of a head, of which `finer` has the more: what several strips carry comes
-    /// together on the one that stands for them, and is parted among them evenly. Spread where it was on another
-    /// head.
+    /// This load on a head with `strips` strips, where `finer` is the head with more: the paint of several strips is
+    /// merged on the one that represents them, or divided among them evenly. A load of another head is spread.
     #[must_use]
     pub fn onto(&self, strips: usize, finer: &Head) -> Self {
         let own = self.texels / TEXELS_PER_STRIP;
@@ -291,7 +290,7 @@ impl BrushLoad {
                             to[coarse] += from[fine];
                             continue;
                         }
-                        // The first of the strips is the one that stood for them: it has what is left over.
+                        // The first strip, which represented the others, gets the remainder.
                         let (whole, parts) = (from[coarse], shares[*stands]);
                         to[fine] = whole / parts + if strip == *stands { whole % parts } else { 0 };
                     }
@@ -346,7 +345,7 @@ impl BrushLoad {
         self.held_mut(slot).film[texel] += count;
     }
 
-    /// Adds to a paint on a texel's film, or takes away of what is there.
+    /// Adds to a paint on a texel's film, or subtracts from it.
     #[inline]
     pub fn change_film(&mut self, slot: usize, texel: usize, change: i32) {
         let count = &mut self.held_mut(slot).film[texel];
@@ -428,7 +427,7 @@ mod tests {
 
     use super::*;
 
-    /// Whatever strips a head is thinned to, what they carry is all there, and near where it was.
+    /// Thinning to any number of strips conserves their paint, close to its place.
     #[test]
     fn what_thinned_strips_carry_is_all_there() {
         let file = BrushFile::library("flat").expect("flat");
@@ -474,7 +473,7 @@ mod tests {
         let load = BrushLoad::spread(24, &counts, 0.0);
         assert_eq!(load.counts(), counts);
         let mut load = BrushLoad::spread(300, &load.counts(), 40.0);
-        // It shows: its films are as full as they may be, of which so little blue is less than a quantum.
+        // Its films are as full as possible, with less than a quantum of the rare blue.
         assert!(load.films().iter().all(|film| *film == 39));
         assert_eq!(load.take_all(), counts);
         assert_eq!(load.total(), 0);

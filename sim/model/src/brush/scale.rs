@@ -9,12 +9,12 @@ pub struct Scale {
     pub zoom: f64,
 }
 
-/// Way of a brush in one step, m of its own lengths.
+/// Path of a brush in one step, m of its own lengths.
 pub(crate) const STEP_M: f64 = 0.25e-3;
 
 impl Scale {
-    /// Way of a brush in one step, cells: at least one. One that is `fine` goes no farther: paint goes before the
-    /// edge of a blade, which is narrow, and a hairline would become wider by what its slanting hair sweeps.
+    /// Path of a brush in one step, cells: at least one. A `fine` one has no longer steps, because paint moves ahead of
+    /// a blade's narrow edge, and a hairline would be widened by the sweep of its slanting hair.
     #[must_use]
     pub fn step_cells(&self, fine: bool) -> f64 {
         if fine {

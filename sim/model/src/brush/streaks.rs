@@ -1,20 +1,20 @@
-//! Streaks: variation of the paint that bristles take up at a load, so that no two loads paint the same stroke.
+//! Streaks: variation of the paint that bristles take up, so that no two loads paint the same stroke.
 //!
-//! A bristle's share is part its own (its place and kind, from the brush file), part chance of the load: patches where
-//! the heap was touched well or not, and single bristles. The seed is the painting's number of steps, which the journal
-//! has.
+//! A bristle's share is part its own (its place and kind, from the brush file), part random: patches of good and bad
+//! contact with the heap, and single bristles. The seed is the painting's number of steps, which is in the journal.
 
 use maulstick_brush::Head;
 use maulstick_brush::head::disorder::{noise, unit};
 
 /// Share of a bristle's own unevenness that is left beside the chance of a load.
 const OWN: f32 = 0.6;
-/// Chance of patches as wide as this share of half the head, and of single bristles: at most so much of the mean.
+/// Width of random patches, as a share of half the head, and greatest variation of patches and of single bristles, as a
+/// share of the mean.
 const PATCH: f32 = 0.16;
 const PATCHES: f32 = 1.0;
 const SINGLE: f32 = 1.2;
 /// The least that a bristle takes of the mean.
-const LEAST: f32 = 0.08;
+const SHARE_MIN: f32 = 0.08;
 
 /// Share of each strip over the mean of all, for the load with this seed: the head as a whole takes the same.
 #[must_use]
@@ -25,7 +25,7 @@ pub fn streaks(head: &Head, seed: u64) -> Vec<f32> {
         let patch = noise(seed, [root[0] / PATCH, 0.5 * root[1] / PATCH]);
         let single = unit(seed, [strip as i64, i64::MIN]);
         let chance = PATCHES * (2.0 * patch - 1.0) + SINGLE * (2.0 * single - 1.0);
-        (own * (1.0 + chance)).max(LEAST)
+        (own * (1.0 + chance)).max(SHARE_MIN)
     });
     let mut taken: Vec<f32> = taken.collect();
     let mean = taken.iter().sum::<f32>() / taken.len() as f32;

@@ -19,9 +19,9 @@ pub const STRIPS_MOST: usize = maulstick_brush::file::check::STRIPS_MOST;
 pub struct BrushTraits {
     /// Way of a step, cells.
     pub step_cells: f32,
-    /// In so many parts the paint of a step moves, so that none goes farther than a cell in one.
+    /// Number of parts of a step in which paint moves, so that none moves more than a cell in one.
     pub parts: u32,
-    /// How often the step is doubled, because the machine falls behind.
+    /// Number of times that the step is doubled, because the machine falls behind.
     pub doublings: u32,
     /// Half the width of a strip, cells.
     pub half_width: f32,
@@ -55,9 +55,9 @@ pub struct BrushTraits {
     pub floats: bool,
     /// Share of its motion that paint follows.
     pub follows: f32,
-    /// By what paint goes over.
+    /// Parameters of paint transfer.
     pub exchanging: Exchanging,
-    /// Share of what a film lacks that comes from inside in [`FLOW_STEPS`](Self::FLOW_STEPS).
+    /// Share of a film's deficit that comes from inside in [`FLOW_STEPS`](Self::FLOW_STEPS).
     pub refill: f64,
     /// Share of the difference between texels that evens out in as many.
     pub creep: f64,
@@ -68,16 +68,16 @@ pub struct BrushTraits {
 /// Seepage of paint between the films of neighbouring texels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seep {
-    /// Share of their difference that evens out between strips, beyond what the yield stress holds.
+    /// Share of their difference that evens out between strips, above the part held by the yield stress.
     pub beside: f64,
     /// The same along a strip, where the motion shears it.
     pub along: f64,
 }
 
 impl BrushTraits {
-    /// Paint flows within each strip once in so many steps: in others at another step, so that strokes show none.
+    /// Interval between flows of paint within a strip, steps; strips take turns, so that strokes show none.
     pub const FLOW_STEPS: u64 = 2;
-    /// Share of what a film lacks that comes from inside along a reference cell.
+    /// Share of a film's deficit that comes from inside along a reference cell.
     const REFILL: f64 = 0.15;
     /// Share of the difference between texels that evens out along a reference cell.
     const CREEP: f64 = 0.03;
@@ -143,13 +143,13 @@ impl BrushTraits {
 }
 
 impl BrushTraits {
-    /// Quanta on and inside a fully loaded head of so many strips.
+    /// Quanta on and inside a fully loaded head with this number of strips.
     #[must_use]
     pub fn full_load(&self, strips: usize) -> f64 {
         (strips * TEXELS_PER_STRIP) as f64 * (self.film_full + self.inside_full)
     }
 
-    /// Those of a step that is doubled so many times.
+    /// The traits of a step doubled a number of times.
     #[must_use]
     pub fn doubled(mut self, doublings: u32) -> Self {
         let Seep { beside, along } = &mut self.seep;
@@ -164,21 +164,21 @@ impl BrushTraits {
     }
 }
 
-/// The most quanta of a full film, and inside a full texel: single bristles take up several times as much, which is
-/// counted in 32 bits. A brush of thousands of cells across carries no more.
+/// Greatest quanta of a full film, and inside a full texel: single bristles take up several times that, counted in 32
+/// bits. Brushes of thousands of cells across carry no more.
 const TEXEL_MOST: f64 = (1u32 << 29) as f64;
 /// Larger cells than these hold less of the peaks of a tooth, into which bristles sink, m.
 const PEAK_M: f64 = 0.125e-3;
-/// A film takes up at most this many times its full thickness.
+/// Greatest film as a multiple of its full thickness.
 pub(crate) const FILM_OVER: f64 = 2.0;
-/// As [`FILM_OVER`]: what a blade scrapes off gathers on it.
+/// Greatest film on a blade, which gathers the paint that it scrapes off.
 pub(crate) const BLADE_OVER: f64 = 3.0;
 /// Share of the motion of bristles that paint follows: it sticks to them about as to the canvas (a half in Baxter 2004,
 /// § 6.4.2). Paint in front of a blade goes with it.
 pub(crate) const FOLLOWS: f32 = 0.4;
-/// As [`FOLLOWS`].
+/// [`FOLLOWS`] of a blade.
 pub(crate) const BLADE_FOLLOWS: f32 = 1.0;
-/// Share of the lift that is left where the head is fully pressed: bristles never lie in one plane.
+/// Share of the lift that remains where the head is fully pressed: bristles never lie in one plane.
 const UNEVEN: f32 = 0.1;
 
 impl BrushTraits {

@@ -26,7 +26,7 @@ pub(super) struct Band {
     pub(super) contacts: Vec<Contact>,
     /// Wet quanta of all paints on each contact, before the step.
     pub(super) wet: Vec<f32>,
-    /// Columns and rows of the grid that hold the contacts: from, up to but not with.
+    /// Columns and rows of the grid with contacts, half-open.
     pub(super) reach: ([usize; 2], [usize; 2]),
     /// The whole footprint's cells.
     pub(super) grid: Area,
@@ -39,14 +39,14 @@ impl Band {
     /// The reach of none.
     pub(super) const NOWHERE: ([usize; 2], [usize; 2]) = ([usize::MAX; 2], [0; 2]);
 
-    /// Nothing.
+    /// Removes all contacts.
     pub(super) fn clear(&mut self) {
         self.contacts.clear();
         self.wet.clear();
         self.reach = Self::NOWHERE;
     }
 
-    /// Nothing on those rows of a grid.
+    /// Clears these rows of a grid.
     pub(super) fn begin(&mut self, grid: Area, offset: [f32; 2], rows: Range<usize>) {
         self.clear();
         self.grid = grid;
@@ -54,7 +54,7 @@ impl Band {
         self.drawing.begin(grid.size, rows);
     }
 
-    /// Draws those parts of the head that, with their paint, come below `top`, cells; its strips are on the grid already.
+    /// Draws the parts of the head that, with their paint, are below `top`, cells; its strips are on the grid already.
     pub(super) fn draw_head(&mut self, step: &Step<'_>, ribbons: &Ribbons, top: f32) {
         let (traits, to) = (&step.traits, step.sweep.to);
         let film = step.load.thickest() as f32 * traits.film_cells_per_quantum;

@@ -30,7 +30,7 @@ impl Band {
             let corners = face.map(|i| {
                 let i = i as usize;
                 let [around, along] = skin.places()[i];
-                // A face over the seam goes on beyond 1.
+                // A face over the seam continues beyond 1.
                 let turns = (first - around).round();
                 Corner {
                     at: [

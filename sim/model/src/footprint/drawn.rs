@@ -1,5 +1,5 @@
-//! The head over cells, whatever lies on them: for models that draw it once and touch the surface with it at several
-//! places.
+//! The head over cells, independent of their paint: for models that draw it once and touch the surface with it at
+//! several places.
 
 use maulstick_canvas::window::Area;
 use maulstick_num::fork_join::Balance;
@@ -9,11 +9,11 @@ use super::ribbons::Ribbons;
 use super::shares_of;
 use crate::interface::Step;
 
-/// Rows of the planes are a multiple of so many cells.
+/// Rows of the planes are padded to a multiple of this number of cells.
 const RUN: usize = 16;
 
-/// The lowest part of a head over each cell of a grid. Planes are row after row, each row [`stride`](Self::stride) long; what
-/// it has beyond the grid is uncovered.
+/// The lowest part of a head over each cell of a grid. Planes are row by row, each row [`stride`](Self::stride) long;
+/// its padding is uncovered.
 #[derive(Clone, Debug, Default)]
 pub struct Drawn {
     /// The surface's cell at the grid's lower left corner.
@@ -54,8 +54,8 @@ impl Drawn {
     /// No texel.
     pub const ABSENT: u32 = u32::MAX;
 
-    /// Draws the head in the middle of the step's motion on a grid of so many columns and rows from `origin` on, as far as it comes
-    /// below `top`, cells. The grid may go beyond the window.
+    /// Draws the head in the middle of the step's motion on a grid of `size` columns and rows from `origin` on, below
+    /// `top`, cells. The grid may extend beyond the window.
     pub fn draw(&mut self, step: &Step<'_>, origin: [i64; 2], size: [usize; 2], top: f32) {
         (self.origin, self.size) = (origin, size);
         self.stride = size[0].next_multiple_of(RUN);
@@ -122,7 +122,7 @@ impl Drawn {
 }
 
 impl Part<'_> {
-    /// Notes by cell what lies over it.
+    /// Stores the part of the head over each cell.
     fn resolve(&mut self, ribbons: &Ribbons, grid: Area, stride: usize) {
         let drawing = &self.band.drawing;
         let [cover, height, clearance, travel] = &mut self.planes;

@@ -36,7 +36,7 @@ impl Lying {
     }
 }
 
-/// The highest that paint of `lying` quanta stands on the cells of an area, cells; 0 where none does.
+/// Greatest height of paint of `lying` quanta on the cells of an area, cells; 0 without any.
 fn highest(lying: &[f32], area: &Area, window: &Window, to_cells: f32) -> f32 {
     let rows = area.rows(window.width());
     let lying = lying.chunks_exact(area.size[0].max(1));
@@ -45,7 +45,7 @@ fn highest(lying: &[f32], area: &Area, window: &Window, to_cells: f32) -> f32 {
     })
 }
 
-/// The highest that paint of `lying` quanta stands on `base`, cells; 0 where none does.
+/// Greatest height of paint of `lying` quanta on `base`, cells; 0 without any.
 fn highest_of(lying: &[f32], base: &[f32], to_cells: f32) -> f32 {
     let mut highest = [0.0f32; 8];
     let (runs, bases) = (lying.chunks_exact(8), base.chunks_exact(8));

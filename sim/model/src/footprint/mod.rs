@@ -25,11 +25,11 @@ use crate::interface::{Step, StepReport};
 
 /// Smaller footprints run on one core: fork-join would cost more than it saves.
 const PARALLEL_MIN_CELLS: usize = 400;
-/// Cells that are worth a core of their own beside two others: a stage of a step takes some microseconds for them,
-/// several times what it takes to hand them over.
+/// Number of cells that justify another core: a stage of a step takes some microseconds for them, several times the
+/// cost of handing them over.
 const CELLS_PER_SHARE: usize = 1000;
 
-/// Shares in which a stage does so many cells, of the [threads] that there are.
+/// Number of shares for a stage over `cells` cells, up to the [threads].
 #[must_use]
 pub fn shares_of(cells: usize) -> usize {
     match cells {
@@ -58,7 +58,7 @@ pub struct Footprint {
 }
 
 impl Footprint {
-    /// Finds what the head touches after the step's motion.
+    /// Computes the contacts of the head after the step's motion.
     pub fn find(&mut self, step: &mut Step<'_>) {
         self.contacts.clear();
         let traits = step.traits;
@@ -67,9 +67,9 @@ impl Footprint {
         if self.grid.is_empty() {
             return;
         }
-        // Of the cells around the brush alone: what else the window holds must not matter.
+        // From the cells around the brush alone: the rest of the window must not matter.
         let top = self.lying.weigh(self.grid, step);
-        // The pressed head lies lower than it was solved by as much as the ride does.
+        // The pressed head may lie below its solved height by the depth of the ride.
         let low = top + sink + step.window.ride_below();
         // Strips are drawn in the coordinates of the surface.
         let origin = step.window.origin();
@@ -93,12 +93,12 @@ impl Footprint {
         self.gather(step.window);
     }
 
-    /// Notes how high paint stands where the brush has left it.
+    /// Records the height of paint behind the brush.
     pub fn note_left(&mut self, step: &mut Step<'_>) {
         self.lying.weigh(self.around, step);
     }
 
-    /// Gathers the contacts of the bands, and lays the cells around them.
+    /// Gathers the contacts of the bands, and indexes the cells around them.
     fn gather(&mut self, window: &Window) {
         self.contacts.clear();
         self.wet.clear();

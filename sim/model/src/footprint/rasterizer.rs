@@ -1,7 +1,7 @@
-//! Drawing the head into a grid of cells: in each cell the piece that counts as the lowest stays.
+//! Drawing of the head into a grid of cells: the lowest piece of each cell is kept.
 //!
-//! Rows are drawn eight cells at a time. Only the height and the number of the piece are kept; what
-//! else is known of a cell is computed for those pieces alone that are left.
+//! Rows are drawn eight cells at a time. Only the height and the number of the piece are stored; all else is computed
+//! for the remaining pieces alone.
 
 use std::ops::Range;
 
@@ -11,16 +11,16 @@ use super::piece::Piece;
 use super::ribbons::{Laid, Ribbons};
 use crate::brush::traits::TEXELS_PER_STRIP;
 
-/// A ribbon that covers a cell only in part counts as higher by this much, cells: of ribbons beside each
-/// other each has the cells that it covers most, so more of them give paint where cells are coarse.
+/// Greatest height added to a ribbon that covers a cell only in part, cells: each of several adjacent ribbons gets the
+/// cells that it covers most, so more of them give paint where cells are coarse.
 const EDGE_PENALTY: f32 = 0.9;
-/// Nothing here.
+/// Marker of a cell without a piece.
 const NOTHING: f32 = -1.0;
 /// Cells drawn at a time; rows are padded so that such a run never ends in the next one.
 const LANES: usize = 8;
 const LANE: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-/// Larger than any cover: what is multiplied by it limits a cover only where it is not positive.
-const BEYOND: f32 = 1e6;
+/// Larger than any cover: a product with it limits a cover only where it is not positive.
+const COVER_BOUND: f32 = 1e6;
 
 /// The part of the head over a cell.
 #[derive(Clone, Copy, Debug)]
@@ -80,12 +80,12 @@ pub(super) struct Drawing {
     /// Share of each cell that all pieces leave open. They overlap at random: each covers its share of the area that
     /// the others leave open.
     open: Vec<f32>,
-    /// Those of cells that are drawn by themselves.
+    /// Pieces of cells that are drawn singly.
     pieces: Vec<Piece>,
 }
 
 impl Drawing {
-    /// An empty grid of so many columns and rows, of which only those `rows` are drawn.
+    /// An empty grid of `size` columns and rows, of which only `rows` are drawn.
     pub(super) fn begin(&mut self, size: [usize; 2], rows: Range<usize>) {
         self.size = size;
         self.stride = size[0].next_multiple_of(LANES) + LANES;
@@ -216,7 +216,7 @@ impl Drawing {
                 let cover = (reach - (L::splat(y) - middle).abs() * cosine).least(most);
                 let fade = (starts[1] + starts[0] * column).least(ends[1] + ends[0] * column);
                 let cover = cover * fade.least(L::splat(1.0)).most(L::splat(0.0));
-                let inside = (L::splat(high) - column) * L::splat(BEYOND);
+                let inside = (L::splat(high) - column) * L::splat(COVER_BOUND);
                 let t = (off * inverse).most(L::splat(0.0)).least(L::splat(1.0));
                 let lowest = z + t * rise + bottom + rank;
                 self.lanes::<L>(row, x, number, cover.least(inside), lowest);
@@ -244,8 +244,7 @@ impl Drawing {
         let height = zero.less(cover).choose(height, L::splat(f32::MAX));
         let wins = height.less(old).choose(one, zero);
         *scores = height.least(old).values();
-        // Of a choice between what lies there and another, compilers make a store of some lanes, which
-        // takes many times as long on some processors.
+        // A conditional choice would be compiled to a masked store, which is many times slower on some processors.
         let before = L::of(numbers);
         *numbers = (before + wins * (L::splat(number) - before)).values();
     }
@@ -270,7 +269,7 @@ mod tests {
     use super::super::piece::Line;
     use super::*;
 
-    /// Whatever is drawn in runs of eight is what each cell by itself would say.
+    /// Drawing in runs of eight agrees with single cells.
     #[test]
     fn runs_of_cells_agree_with_single_cells() {
         let (mut drawing, ribbons) = (Drawing::default(), Ribbons::default());

@@ -48,7 +48,7 @@ pub(super) struct Laid {
     pub(super) rows: Range<usize>,
 }
 
-/// The strips that one core lays.
+/// The strips drawn by one core.
 #[derive(Clone, Debug, Default)]
 struct Share {
     strips: Range<usize>,
@@ -95,7 +95,7 @@ impl Point {
 }
 
 impl Ribbons {
-    /// Lays those parts of the strips on a grid that, with their paint, come below `top`, cells.
+    /// Lays out the parts of the strips on a grid that, with their paint, are below `top`, cells.
     pub(super) fn lay(&mut self, step: &Step<'_>, grid: Area, offset: [f32; 2], top: f32) {
         let strips = step.head.strips();
         self.used = shares_of(grid.cells()).min(strips.max(1));
@@ -147,7 +147,7 @@ impl Share {
         }
     }
 
-    /// Lays those segments of a strip that come below `height`.
+    /// Lays out the segments of a strip below `height`.
     fn lay_strip(&mut self, step: &Step<'_>, under: Under, ribbon: Ribbon, height: f32) {
         let mut first = Point::of(step, ribbon.strip, 0);
         for station in 1..STATIONS {
@@ -167,9 +167,9 @@ impl Share {
 }
 
 impl Under {
-    /// A ribbon from one point to another as it goes over the cells in the step: of each column of cells, or each row where
-    /// it goes rather up than across, those that it covers, each by the share of its area and of the path. `ends` is true
-    /// where its touching part begins here, and where it ends here.
+    /// A ribbon between two points during the motion of the step: for each column of cells, or each row for a rather
+    /// upright ribbon, the covered cells, each by the share of its area and of the path. `ends` is true where its
+    /// touching part begins here, and where it ends here.
     fn piece(
         &self,
         ribbon: Ribbon,

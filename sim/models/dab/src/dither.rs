@@ -1,16 +1,16 @@
-//! Volumes below a unit: what is lost by rounding at one cell and step is made good at those beside and after it.
+//! Volumes below a unit: the rounding error of one cell and step is compensated at those beside and after it.
 //!
 //! Thresholds are an additive recurrence with the powers of the plastic number over the surface, and with the golden
 //! ratio over the steps (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018). The error of n
-//! rounded volumes stays near a unit, as when it is diffused from cell to cell, and no cell waits for another.
+//! rounded volumes stays near a unit, as with error diffusion, and no cell waits for another.
 
-/// Parts of the recurrence across, up and from step to step.
+/// Increments of the recurrence across, up and from step to step.
 const STRIDES: [f64; 3] = [
     0.754_877_666_246_692_7,
     0.569_840_290_998_053_2,
     0.618_033_988_749_894_9,
 ];
-/// Odd factor that spreads seeds (Weyl; 2⁶⁴ by the golden ratio).
+/// Odd factor that spreads seeds (Weyl; 2⁶⁴ divided by the golden ratio).
 const SPREAD: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// Thresholds of one blend: 0 ≤ θ < 1.
@@ -61,7 +61,7 @@ impl Dither {
     }
 }
 
-/// As `value − ⌊value⌋`, which is a call where the target has no register for it.
+/// `value − ⌊value⌋` without `floor`, which is a call where the target lacks the instruction.
 fn fraction(value: f64) -> f64 {
     let whole = value as i64 as f64;
     let rest = value - whole;

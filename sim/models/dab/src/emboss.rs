@@ -2,12 +2,13 @@
 
 use maulstick_types::paint::TILE;
 
-/// The kernel, the uppermost row first; a correlation.
+/// Kernel of a correlation, the uppermost row first.
 const KERNEL: [[f32; 3]; 3] = [[0.0, -1.0, -2.0], [1.0, 0.0, -1.0], [2.0, 1.0, 0.0]];
 
-/// Embossing of the heights of a tile, rows from the bottom: what is added to each channel where the strength is 1.
+/// Embossing of the heights of a tile, rows from the bottom: the summand of each channel at strength 1.
 ///
-/// Beyond its edge a tile goes on with the mean slope of its outer two cells, so that it needs no other and no edge shows.
+/// Beyond its edge a tile continues with the mean slope of its outer two cells, so that it needs no other and no edge
+/// shows.
 #[must_use]
 pub fn emboss(heights: &[f32]) -> Vec<f32> {
     let at = |x: i64, y: i64| {
@@ -80,7 +81,7 @@ mod tests {
         assert!(found > TILE / 2, "a tile level beyond its edge passes");
     }
 
-    /// The kernel on a cell of a tile whose outermost cells go on level beyond its edge, in f64.
+    /// The kernel on a cell of a tile whose outermost cells continue level beyond its edge, in f64.
     fn level_beyond(heights: &[f32], [x, y]: [usize; 2]) -> f32 {
         let rows = [
             (1, [0.0, -1.0, -2.0]),

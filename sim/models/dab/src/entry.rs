@@ -7,7 +7,7 @@ use crate::layers::Layers;
 use crate::sheet::PANELS;
 use crate::step::Dab;
 
-/// Strength of the embossing, encoded channel by metre.
+/// Strength of the embossing, change of an encoded channel per metre.
 const EMBOSS: f32 = 250.0;
 
 /// The entry; the hand alone feels its rheology, for in this model paint does not flow.

@@ -1,5 +1,5 @@
-//! The films of a brush on its raster (Baxter 2004, § 4.5.1): that of each texel is parted among the cells that it covers,
-//! and what they hold after the blends is its film again.
+//! Films of a brush on its raster (Baxter 2004, § 4.5.1): each texel's film is distributed over its cells, and their
+//! contents after the blends become its film again.
 
 use std::ops::Range;
 
@@ -9,15 +9,15 @@ use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 use maulstick_model::footprint::drawn::Drawn;
 use maulstick_num::fork_join::each;
 
-/// A paint on the raster.
+/// Film of one paint on the raster.
 #[derive(Debug, Default)]
 pub(crate) struct Film {
     pub(crate) slot: usize,
-    /// Quanta by cell; 0 where no texel is.
+    /// Quanta by cell; 0 without a texel.
     pub(crate) plane: Vec<f32>,
-    /// Quanta that each texel has given to each of its cells; 0 at last, for the cells that have none.
+    /// Quanta lent by each texel to each of its cells; a last 0 for the cells without one.
     lent: Vec<f32>,
-    /// Quanta that come back to each texel.
+    /// Quanta returned to each texel.
     back: Vec<i64>,
 }
 
@@ -26,9 +26,9 @@ pub(crate) struct Film {
 pub(crate) struct Films {
     films: Vec<Film>,
     used: usize,
-    /// Cells that each texel covers.
+    /// Number of cells of each texel.
     cells: Vec<u32>,
-    /// Share of a texel's film on each of them.
+    /// Share of a texel's film on each of its cells.
     shares: Vec<f64>,
 }
 
@@ -59,7 +59,7 @@ impl Film {
         }
     }
 
-    /// Sums what the cells of each texel hold.
+    /// Sums the cells of each texel.
     fn gather(&mut self, drawn: &Drawn) {
         self.back.clear();
         self.back.resize(self.lent.len(), 0);
@@ -74,7 +74,7 @@ impl Film {
 }
 
 impl Films {
-    /// Those that are in use, by slot.
+    /// Films in use, by slot.
     pub(crate) fn in_use(&mut self) -> &mut [Film] {
         &mut self.films[..self.used]
     }
@@ -86,14 +86,14 @@ impl Films {
         film.map(|film| &film.plane[..])
     }
 
-    /// The strips that have a cell, some of them more than once.
+    /// The strips with a cell; a strip may occur more than once.
     pub(crate) fn strips(&self) -> impl Iterator<Item = usize> + '_ {
         let texels = self.cells.iter().enumerate();
         let texels = texels.filter(|(_, cells)| **cells > 0);
         texels.map(|(texel, _)| texel / TEXELS_PER_STRIP)
     }
 
-    /// Parts the films of these paints among the cells of a head.
+    /// Distributes the films of these paints over the cells of a head.
     pub(crate) fn lend(
         &mut self,
         drawn: &Drawn,
@@ -110,7 +110,7 @@ impl Films {
                 }
             }
         }
-        // Cells that a texel's film is as large as.
+        // Number of cells with the volume of a texel's film.
         let large = 1.0 / (QUANTA_PER_UNIT * f64::from(traits.film_units_per_quantum));
         let share = |cells: &u32| 1.0 / large.max(f64::from(*cells));
         self.shares.clear();
@@ -127,7 +127,7 @@ impl Films {
         });
     }
 
-    /// Gives each texel what its cells hold now. By slot, what the brush has more than before.
+    /// Returns the cells' quanta to their texels. By slot, the gain of the brush.
     pub(crate) fn give_back(&mut self, drawn: &Drawn, load: &mut BrushLoad) -> [i64; SLOTS] {
         let mut gained = [0; SLOTS];
         let films = &mut self.films[..self.used];

@@ -1,8 +1,9 @@
-//! Layers over each other as they are seen (Baxter 2004, § 4.6, 4.7).
+//! Appearance of stacked layers (Baxter 2004, § 4.6, 4.7).
 //!
 //! Colours are encoded sRGB, as the 8-bit textures of the text: in a layer they mix by the volumes of the paints. Wet
-//! paint of volume V hides α = min(V·O_t, 1) of what lies under it (eq. 4.1). What dries under wet paint has the colour
-//! that leaves all as it was: with α' of what stays wet, C'_d = (α·C_w + (1 − α)·C_d − α'·C_w)/(1 − α').
+//! paint of volume V hides α = min(V·O_t, 1) of what lies under it (eq. 4.1). A layer that dries under wet paint gets
+//! the colour that leaves the appearance unchanged: with α' of the paint that stays wet, C'_d = (α·C_w + (1 − α)·C_d −
+//! α'·C_w)/(1 − α').
 
 mod wet_over;
 
@@ -18,23 +19,23 @@ use crate::emboss::emboss;
 use crate::volume::{OPAQUE, UNIT};
 use wet_over::{noted, wet_over, with_wet_noted};
 
-/// Thickness of the film over white that has the colour of its paint, m: dark transparent paints are nearly black where
-/// they are thick, and their mixtures would be grey.
+/// Thickness of the film over white from which a paint's colour is taken, m: dark transparent paints are nearly black
+/// in thick films, and their mixtures would be grey.
 const SHOWN_M: f64 = 40e-6;
 /// Reflectance of that white.
 const WHITE: f32 = 0.95;
-/// Values of a table of the transfer curve.
+/// Number of values in a table of the transfer curve.
 const TABLE: usize = 4096;
 
-/// How dAb's paint is shown.
+/// Appearance of dAb's paint.
 #[derive(Clone, Copy, Debug)]
 pub struct Layers {
-    /// Strength of the embossing, encoded channel by metre of height, where the light's relief is 1: that is the text's
+    /// Strength of the embossing, change of an encoded channel per metre of height at a relief of 1: the text's
     /// bumpiness.
     pub emboss: f32,
 }
 
-/// Colours of dAb's paint, as conversions take them.
+/// Colours of dAb's paint, for conversions.
 pub static VOLUMES: VolumeColours = VolumeColours {
     colours,
     opaque: OPAQUE * UNIT,
@@ -45,14 +46,14 @@ pub static VOLUMES: VolumeColours = VolumeColours {
     noted,
 };
 
-/// Share of what lies under it that so many quanta hide.
+/// Opacity of a number of quanta.
 #[inline]
 fn hides(quanta: f32) -> f32 {
     (quanta * (1.0 / (OPAQUE * UNIT))).min(1.0)
 }
 
-/// Share by which dried paint replaces the colour under it, where so many quanta stay wet over it: C'_d of the text is
-/// C_d + share·(C_w − C_d).
+/// Share by which dried paint replaces the colour under it, with `stays` quanta wet over it: C'_d of the text is C_d +
+/// share·(C_w − C_d).
 #[inline]
 fn dry_share(dried: f32, stays: f32) -> f32 {
     let left = hides(stays);
@@ -65,7 +66,7 @@ fn dry_share(dried: f32, stays: f32) -> f32 {
     }
 }
 
-/// A curve between 0 and 1 by table.
+/// A tabulated curve from 0 to 1.
 #[derive(Debug)]
 struct Curve(Vec<f32>);
 
@@ -87,7 +88,7 @@ impl Curve {
 static CURVES: std::sync::LazyLock<[Curve; 2]> =
     std::sync::LazyLock::new(|| [Curve::of(srgb_encode), Curve::of(srgb_decode)]);
 
-/// Encoded colours of the paints by slot; none of the thinner, which hides nothing.
+/// Encoded colours of the paints by slot; `None` for the thinner, which hides nothing.
 fn colours(look: &Appearance) -> Vec<Option<[f32; 3]>> {
     let studio = &look.studio;
     let white = vec![WHITE; studio.wavelengths()];
@@ -116,7 +117,7 @@ fn mixed(planes: &Planes, colours: &[Option<[f32; 3]>]) -> [Vec<f32>; 4] {
     mixed
 }
 
-/// Lays a layer over the encoded colours of a tile; `share` is what a volume of so many quanta replaces in a cell.
+/// Composites a layer over the encoded colours of a tile; `share` is the opacity of a cell's quanta.
 fn lay(
     rgb: &mut EncodedTile,
     planes: &Planes,
@@ -167,9 +168,10 @@ impl ShowPaint for Layers {
         let heights = self.height(seen.bare, seen.id, seen.tile);
         // The palette is drawn without relief.
         let strength = self.emboss * seen.look.relief();
-        let raised = match seen.bare.wells.is_empty() && strength != 0.0 {
-            true => emboss(&heights),
-            false => vec![0.0; TILE_CELLS],
+        let raised = if seen.bare.wells.is_empty() && strength != 0.0 {
+            emboss(&heights)
+        } else {
+            vec![0.0; TILE_CELLS]
         };
         for (own, (mixed, ground)) in shown.rgb.iter_mut().zip(rgb.iter().zip(&ground)) {
             for cell in 0..TILE_CELLS {
@@ -215,7 +217,7 @@ mod tests {
     }
 
     proptest! {
-        /// However a film dries in parts, what is seen is as when all of it was wet.
+        /// However a film dries in parts, its appearance is that of the whole film wet.
         #[test]
         fn partial_drying_keeps_the_colour(
             film in 0.0..1.5f32, parts in prop::collection::vec(0.01..0.99f32, 1..6), under in 0.0..1.0f32,

@@ -1,23 +1,23 @@
-//! dAb (Baxter 2004, ch. 4): the light paint model. Paint lies on a wet surface and a dry or deep layer, is moved in whole
-//! units, mixes additively, and is not pushed.
+//! dAb (Baxter 2004, ch. 4): the lightweight paint model. Paint has a wet surface layer and a dry or deep layer, is
+//! moved in whole units, mixes additively, and is not pushed.
 //!
-//! It keeps no planes of its own: additive colour is linear in the volumes of the paints, so counts by slot say what RGB
-//! textures would. [`Dab`] is the step, [`Layers`] how its paint is shown.
+//! It keeps no planes of its own: additive colour is linear in the volumes of the paints, so counts by slot contain the
+//! RGB textures. [`Dab`] is the step, [`Layers`] the appearance of its paint.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`volume`] | units of paint: 8 bits a layer, 32 of the surface in a deep one |
 //! | [`dither`] | volumes below a unit |
-//! | [`touching`] | where brush and canvas meet |
-//! | [`transfer`] | what goes from brush to canvas and back |
+//! | [`touching`] | contact of brush and canvas |
+//! | [`transfer`] | transfer from brush to canvas and back |
 //! | [`raster`] | the brush over the cells that it touches |
 //! | [`reservoir`] | the surface of a brush filled again |
 //! | [`relative_height`] | heights as differences of a byte |
 //! | [`stroke`] | stroking algorithms: faster, better, along a spline |
 //! | [`layers`], `wet_over`, [`emboss`] | colour and relief |
-//! | `sheet` | its panels of the sheet of effects |
+//! | `sheet` | panels of the sheet of effects |
 //!
-//! A loaded brush over wet paint lays its own and takes up the other; no quantum is made or lost:
+//! A loaded brush over wet paint deposits its own and takes up the other; no quantum is made or lost:
 //!
 //! ```
 //! use maulstick_brush::{BrushFile, HeadPose};
@@ -48,17 +48,16 @@
 //!
 //! - A unit of volume is 512 quanta, 255 units at most in a layer. Rounding uses quasi-random thresholds over cells and
 //!   steps, so small volumes are not lost and no cell waits for another.
-//! - Stroking: Algorithms 1 and 2, and the parabola through three heads; the doublings of a step choose. The head is
-//!   drawn once for all blends in which the whole of it goes the same way within half a cell. The films of its texels
-//!   are parted among the cells that they cover, the raster is blended with the canvas at each place of its way, and
-//!   returns to the texels in integers.
-//! - On a device (feature `device`) the processor knows which blends a step has, and sends a record for each; the head is
-//!   drawn once a drawing, and a dispatch blends it at each place. Thresholds are the processor's in fixed point and
-//!   quotients are rounded as it rounds them, so on the same drawing both leave the same counts. Reservoirs are filled in
-//!   f32.
-//! - Colours depend on what stayed wet over a layer when it dried, which the dry page notes
-//!   (`wet_over`); so eq. 4.1 and its inverse (§ 4.7) hold for any number of layers. The optics neither shade
-//!   nor bake this paint (`Colouring::Volumes`).
+//! - Stroking: Algorithms 1 and 2, and the parabola through three heads; the doublings of a step select one. The head
+//!   is drawn once for all blends in which its parts move alike to within half a cell. The films of its texels are
+//!   distributed over their cells, the raster is blended with the canvas at each place of its path, and the films
+//!   return to the texels in integers.
+//! - On a device (feature `device`) the processor sends a record for each blend of a step; the device draws the head
+//!   once a drawing, and a dispatch blends it at each place. Thresholds are the processor's in fixed point and
+//!   quotients are rounded alike, so on the same drawing both give the same counts. Reservoirs are filled in f32.
+//! - Colours depend on the wet paint over a layer when it dried, which the dry page notes (`wet_over`); so eq. 4.1 and
+//!   its inverse (§ 4.7) hold for any number of layers. The optics neither shade nor bake this paint
+//!   (`Colouring::Volumes`).
 
 #[cfg(feature = "device")]
 pub mod device;

@@ -1,5 +1,5 @@
-//! The brush as a raster of the canvas's cells (Baxter 2004, § 4.5.1, 4.5.3): it has the brush's films, and is blended with
-//! the canvas as if it were the brush, at one place or several.
+//! The brush as a raster of the canvas's cells (Baxter 2004, § 4.5.1, 4.5.3): it holds the brush's films, and is
+//! blended with the canvas in place of the brush, at one place or several.
 
 use std::ops::Range;
 
@@ -20,18 +20,18 @@ use crate::stroke::Way;
 use crate::touching::{Brush, Canvas, Touching, touch};
 use crate::transfer::{Limits, Paints, Row, blend};
 
-/// What a blend met.
+/// Totals of a blend.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Met {
-    /// Cells under the raster.
+    /// Number of cells under the raster.
     pub under: u64,
-    /// Cells that touched.
+    /// Number of touching cells.
     pub cells: u64,
-    /// Wet quanta on them before.
+    /// Wet quanta on the touching cells before.
     pub wet: u64,
-    /// Those of them that are thinner.
+    /// Quanta of thinner among them.
     pub thinner: u64,
-    /// The cells of the window that it may have changed.
+    /// Cells of the window that may have changed.
     pub reached: Area,
 }
 
@@ -43,33 +43,33 @@ pub struct Raster {
     rate: Vec<f32>,
     way: Vec<f32>,
     films: Films,
-    /// One for each core.
+    /// Contacts of a row, one for each core.
     touching: Vec<Touching>,
 }
 
 /// The rows that one core blends.
 struct Share<'a> {
-    /// Of the raster.
+    /// Rows of the raster.
     rows: Range<usize>,
     touching: &'a mut Touching,
     brush: Vec<&'a mut [f32]>,
     canvas: Vec<&'a mut [f32]>,
-    /// The first and the last of the rows that touch.
+    /// First and last of the touching rows.
     met: Option<[usize; 2]>,
     sums: [f64; 3],
 }
 
 /// A raster over a window.
 struct Place<'a> {
-    /// Of the raster: cover, rate, way, height and clearance.
+    /// Planes of the raster: cover, rate, path, height and clearance.
     over: [&'a [f32]; 5],
-    /// Of the window: what catches paint, and what bristles ride on.
+    /// Planes of the window: height of the surface that catches paint, and height at which bristles ride.
     ground: [&'a [f32]; 2],
     /// Cells from row to row, of the raster and of the window.
     strides: [usize; 2],
-    /// Where the cells begin that are blended, on the raster.
+    /// First blended cell on the raster.
     on: [usize; 2],
-    /// They, on the window.
+    /// Blended cells on the window.
     under: Area,
     /// The surface's cell at the window's corner.
     origin: [i64; 2],
@@ -81,7 +81,6 @@ struct Place<'a> {
 }
 
 impl Share<'_> {
-    /// Blends its rows.
     fn blend(&mut self, place: &Place<'_>) {
         let columns = place.under.size[0];
         self.touching.begin(columns);
@@ -142,8 +141,8 @@ impl Share<'_> {
 }
 
 wide! {
-    /// By cell, the share that goes over and the way, by how much of the cell is covered. The way of a strip is by `by` and
-    /// `even` what it travels.
+    /// By cell, transferred share and path, both times the cover. The path of a strip is `by` plus
+    /// `even` times its motion.
     fn shares(
         exchanging: &Exchanging, by_even: [f32; 2], cover_travel: [&[f32]; 2], rate_way: [&mut [f32]; 2],
     ) {
@@ -166,19 +165,19 @@ impl Raster {
         self.films.of(slot)
     }
 
-    /// The strips that the head has over the canvas, some of them more than once.
+    /// The strips over the canvas; a strip may occur more than once.
     pub fn strips(&self) -> impl Iterator<Item = usize> + '_ {
         self.films.strips()
     }
 
-    /// Parts the films of the texels over the canvas among the cells that they cover; they stay in the load until they
-    /// come [back](Self::give_back). `slots` are the paints that brush or canvas may have.
+    /// Distributes the films of the texels over the canvas to their cells; the load keeps them until they are [given
+    /// back](Self::give_back). `slots` are the paints that brush or canvas may have.
     pub fn lend(&mut self, load: &BrushLoad, traits: &BrushTraits, slots: &[usize], way: Way) {
         self.find_ways(traits, way);
         self.films.lend(&self.drawn, load, traits, slots);
     }
 
-    /// How far each cell of the brush goes, and what share goes over on the way.
+    /// Computes the path of each cell of the brush, and the share transferred along it.
     fn find_ways(&mut self, traits: &BrushTraits, way: Way) {
         let cells = self.drawn.texel.len();
         for plane in [&mut self.rate, &mut self.way] {
@@ -222,7 +221,7 @@ impl Raster {
             return Met::default();
         }
         let drawn = &self.drawn;
-        // Where the cells under it are on the raster.
+        // Offset of these cells on the raster.
         let on = [0, 1].map(|i| {
             let from = drawn.origin[i] - origin[i] + shift[i];
             (under.from[i] as i64 - from) as usize
@@ -304,13 +303,13 @@ impl Raster {
         met
     }
 
-    /// Gives each texel what its cells hold now. By slot, what the brush has more than before.
+    /// Returns the cells' quanta to their texels. By slot, the gain of the brush.
     pub fn give_back(&mut self, load: &mut BrushLoad) -> [i64; SLOTS] {
         self.films.give_back(&self.drawn, load)
     }
 }
 
-/// So many cells from the beginning of each plane, which is left without them.
+/// Splits the first `cells` cells off each plane.
 fn split<'a>(planes: &mut [&'a mut [f32]], cells: usize) -> Vec<&'a mut [f32]> {
     let first = planes.iter_mut().map(|plane| {
         let cells = cells.min(plane.len());

@@ -1,7 +1,8 @@
-//! Relative height field (Baxter 2004, § 4.8): the height of what has dried as differences between neighbours, a byte each.
+//! Relative height field (Baxter 2004, § 4.8): the height of dried paint as differences between neighbours, a byte
+//! each.
 //!
-//! absheight(i, j) = h(i, j) + absheight(i − 1, j), and absheight(0, j) = h(0, j) + absheight(0, j − 1): the sums that the
-//! text leaves out. Differences beyond a byte lie in a table beside it, so that any height comes back exactly.
+//! absheight(i, j) = h(i, j) + absheight(i − 1, j), and absheight(0, j) = h(0, j) + absheight(0, j − 1): the sums that
+//! the text leaves out. Differences beyond a byte are in a separate table, so that any height is exact.
 
 use std::collections::BTreeMap;
 
@@ -12,12 +13,12 @@ use crate::volume::units;
 pub struct RelativeHeights {
     columns: usize,
     differences: Vec<i8>,
-    /// Differences that a byte does not hold, by cell.
+    /// Differences that do not fit a byte, by cell.
     beyond: BTreeMap<usize, i64>,
 }
 
 impl RelativeHeights {
-    /// Nothing has dried.
+    /// Heights before any drying.
     #[must_use]
     pub fn level(columns: usize, rows: usize) -> Self {
         Self {
@@ -27,15 +28,14 @@ impl RelativeHeights {
         }
     }
 
-    /// Dries so many quanta of wet paint on a cell: whole units of them, 255 at most. Cells that are not there, and
-    /// amounts below nothing, do nothing.
+    /// Dries `quanta` of wet paint on a cell: whole units, at most 255. Absent cells and negative amounts are ignored.
     pub fn dry(&mut self, cell: usize, quanta: f32) {
         let by = i64::from(units(quanta));
         if cell >= self.differences.len() || by == 0 {
             return;
         }
         self.add(cell, by);
-        // The cells that are told by this one.
+        // The cells whose height is derived from this one.
         if !(cell + 1).is_multiple_of(self.columns) {
             self.add(cell + 1, -by);
         }

@@ -1,17 +1,17 @@
-//! The reservoir of a brush (Baxter 2004, fig. 4.2): it fills the surface layer again where that is low, in whole deep
-//! units of 32 of the surface, and takes up what the surface has too much. Paint higher up on a bristle runs down to where
-//! it is used, as from a reservoir.
+//! The reservoir of a brush (Baxter 2004, fig. 4.2): it refills the surface layer where that is low, in whole deep
+//! units of 32 surface units, and takes up its excess. Paint higher up on a bristle runs down to where it is used, as
+//! from a reservoir.
 
 use maulstick_canvas::quantum::QUANTA_PER_UNIT;
 use maulstick_model::brush::load::{BrushLoad, PaintOnBrush};
 use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 
 use crate::dither::{Dither, whole};
-use crate::volume::{DEEP, UNIT};
+use crate::volume::{RESERVOIR_UNIT, UNIT};
 
-/// Quanta that go from a texel's reservoir to its surface, or back where negative.
+/// Quanta from a texel's reservoir to its surface, or back where negative.
 ///
-/// `surface` and `inside` are what both hold, `full` is what they hold on a full brush, `deep` a deep unit.
+/// `surface` and `inside` are the quanta of both, `full` those of a full brush, `deep` a deep unit.
 #[must_use]
 pub fn flows(
     [surface, inside]: [f64; 2],
@@ -26,48 +26,48 @@ pub fn flows(
     }
 }
 
-/// Quanta that run down a bristle from one texel's surface to the next one's, which holds less, in deep units.
+/// Quanta, in whole deep units, that run down a bristle from one texel's surface to the next one's, which holds less.
 #[must_use]
 pub fn runs([upper, lower]: [f64; 2], deep: f64, (rate, threshold): (f64, f32)) -> f64 {
     let even = 0.5 * (upper - lower).max(0.0);
     (f64::from(whole((rate * even / deep) as f32, threshold)) * deep).min(upper)
 }
 
-/// A paint moved from one place of a texel to another, by slot the same share of each.
+/// Moves a share of all paints from one place of a texel to another; the share is the same in each slot.
 fn share_out(from: &mut u32, to: &mut u32, share: f64) {
     let goes = (f64::from(*from) * share) as u32;
     (*from, *to) = (*from - goes, to.saturating_add(goes));
 }
 
-/// How a brush's surface is filled again on a way.
+/// Refilling of a brush's surface along a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refill {
     /// Quanta of a deep unit of a texel.
     pub deep: f64,
-    /// What surface and inside of a texel hold on a full brush.
+    /// Quanta of a full brush on the surface and inside of a texel.
     pub full: [f64; 2],
-    /// Share of what is lacking that comes.
+    /// Share of the deficit that is refilled.
     pub rate: f64,
 }
 
 impl Refill {
-    /// That of a brush with these traits on a way of so many cells.
+    /// Refilling of a brush with these traits along a path of `cells`.
     #[must_use]
     pub fn of(traits: &BrushTraits, cells: f32) -> Self {
         let units = QUANTA_PER_UNIT * f64::from(traits.film_units_per_quantum);
-        // What a trait says is of so many steps.
+        // The trait holds for FLOW_STEPS steps.
         let steps = f64::from(cells / traits.step_cells) / BrushTraits::FLOW_STEPS as f64;
         let kept = (1.0 - traits.refill).max(1e-9);
         Self {
-            deep: f64::from(DEEP * UNIT) / units,
+            deep: f64::from(RESERVOIR_UNIT * UNIT) / units,
             full: [traits.film_full, traits.inside_full],
             rate: 1.0 - maulstick_num::powf(kept, steps),
         }
     }
 }
 
-/// Moves paint between the reservoirs and the surfaces of these strips, and down the strips, as chance has it in the step
-/// of these thresholds. The load's films are to be [counted](BrushLoad::count_films) afterwards.
+/// Moves paint between the reservoirs and the surfaces of these strips, and down the strips, rounded by the thresholds
+/// of the step. The load's films must be [counted](BrushLoad::count_films) afterwards.
 pub fn refill(
     load: &mut BrushLoad,
     refill: &Refill,
@@ -82,7 +82,7 @@ pub fn refill(
             std::array::from_fn(|place| held(&paints, first + place));
         let thresholds: [[f32; TEXELS_PER_STRIP]; 2] =
             [0, 1].map(|row| dither.along([first as i64, row]));
-        // From the point up: what runs down in one step goes a texel far.
+        // From the point up, so that paint runs down by one texel a step.
         for place in (0..TEXELS_PER_STRIP).rev() {
             let texel = first + place;
             let [surface, inside] = on[place];

@@ -1,5 +1,5 @@
-//! Figure 4.1 of Baxter 2004: the same strokes by both of dAb's stroking algorithms, from heads far from each other and from
-//! near ones.
+//! Figure 4.1 of Baxter 2004: the same strokes by both of dAb's stroking algorithms, from distant heads and from close
+//! ones.
 
 use maulstick_appearance::picture::Picture;
 use maulstick_brush::{BrushFile, HeadPose};
@@ -10,11 +10,11 @@ use crate::step::Dab;
 use crate::stroke::Stroker;
 use crate::volume::{OPAQUE, UNIT};
 
-/// The brush: its width, mm, and its strips.
+/// Width of the brush, mm, and number of its strips.
 const BRUSH: (f64, usize) = (5.0, 128);
-/// Ways from head to head of a fast and a slow hand, mm.
+/// Distances from head to head for a fast and a slow hand, mm.
 const WAYS_MM: [f64; 2] = [6.0, 1.5];
-/// The panels.
+/// Panels of `dab`.
 pub(crate) static PANELS: [SheetPanel; 2] = [
     SheetPanel {
         name: "stroking",
@@ -29,16 +29,16 @@ pub(crate) static PANELS: [SheetPanel; 2] = [
 ];
 /// Both algorithms, in the order of the panel: from left to right.
 const STROKERS: [Stroker; 2] = [Stroker::Faster, Stroker::Better];
-/// Grey of bare canvas, and how much darker an opaque layer is.
+/// Grey of bare canvas, and darkening by an opaque layer.
 const GREYS: [f32; 2] = [236.0, 208.0];
 
-/// An S that a flat brush follows while it turns: where it is, of its width and height, and its turn, rad.
+/// An S that a flat brush follows while it turns: position, in its width and height, and rotation, rad.
 fn at(t: f64) -> ([f64; 2], f64) {
     let (sine, _) = maulstick_num::sin_cos(6.2 * t);
     ([0.2 + 0.6 * t, 0.46 + 0.22 * sine], 2.6 * t)
 }
 
-/// The two strokes from heads as far apart as this, side by side; a pixel a cell.
+/// The two strokes from heads at this distance, side by side; a pixel a cell.
 fn panel(size_mm: [f64; 2], way_mm: f64, cell_mm: f64) -> Result<Picture, SheetError> {
     let [width, height] = size_mm.map(|mm| (mm / cell_mm).round() as usize);
     let half = width / 2;

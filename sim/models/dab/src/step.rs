@@ -15,23 +15,23 @@ use crate::raster::Raster;
 use crate::reservoir::{Refill, refill};
 use crate::stroke::{Stroker, Way, each_drawing};
 
-/// Blends of a step at most, for their numbers.
+/// Greatest number of blends of a step, for their numbering.
 const BLENDS: u64 = 256;
 
-/// The number of the first blend of a brush's step of this number, for its [thresholds](Dither::new).
+/// The number of the first blend of the brush's step `step`, for its [thresholds](Dither::new).
 #[must_use]
 pub fn first_blend(step: u64) -> u64 {
     step.wrapping_mul(BLENDS)
 }
 
-/// The paint model `dab`, with room for its step.
+/// The paint model `dab`, with the buffers of its step.
 #[derive(Debug, Default)]
 pub struct Dab {
     footprint: Footprint,
     lying: Lying,
     raster: Raster,
     poses: [HeadPose; 2],
-    /// The algorithm of all steps; by the load on the machine where there is none.
+    /// Stroking algorithm of all steps; chosen by the load on the machine if absent.
     stroker: Option<Stroker>,
     blended: u64,
 }
@@ -65,23 +65,23 @@ impl Stroker {
     }
 }
 
-/// What the blends of a step share.
+/// Shared state of the blends of a step.
 struct Stroke {
-    /// How high wet paint stands before it, and what comes lower can touch it; cells.
+    /// Height of wet paint before the step, cells: only lower parts of the head can touch it.
     top: f32,
-    /// The paints that brush or canvas have there.
+    /// Slots of the paints on brush or canvas there.
     slots: Vec<usize>,
-    /// The number of the next blend.
+    /// Number of the next blend.
     number: u64,
-    /// The cells that may have changed.
+    /// Cells that may have changed.
     reached: Area,
-    /// By strip, whether it was over the canvas.
+    /// By strip, true if it was over the canvas.
     strips: Vec<bool>,
     report: StepReport,
 }
 
 impl Dab {
-    /// One that strokes by this algorithm, whatever the load.
+    /// A model with a fixed stroking algorithm, whatever the load.
     #[must_use]
     pub fn stroking(stroker: Stroker) -> Self {
         Self {
@@ -90,8 +90,8 @@ impl Dab {
         }
     }
 
-    /// Cells of all footprints blended so far, whether something of the brush touched them or not: the texels that Baxter
-    /// 2004 counts (§ 6.10: 116 footprints of 26² cells are 77,000).
+    /// Number of cells of all footprints blended so far, touched or not: the texels of Baxter 2004 (§ 6.10: 116
+    /// footprints of 26² cells are 77,000).
     #[must_use]
     pub fn texels(&self) -> u64 {
         self.blended
@@ -140,7 +140,8 @@ impl Dab {
         }
         if step.handling.transfer != Transfer::Sponge {
             let dither = Dither::new(step.load.seed(), number);
-            // Paint flows within a strip once in so many steps, in others at another, so that strokes show none.
+            // Paint flows in a strip only every few steps, at different steps in different strips, so that strokes show
+            // none.
             const STEPS: usize = BrushTraits::FLOW_STEPS as usize;
             let turn = step.load.steps() as usize % STEPS;
             let strips = stroke.strips.iter().enumerate();
@@ -166,7 +167,7 @@ impl Dab {
         stroke: &mut Stroke,
     ) {
         let (load, traits) = (&*step.load, &step.traits);
-        // The pressed head lies lower than it was solved by as much as the ride does.
+        // The pressed head may lie below its solved height by the depth of the ride.
         let low = stroke.top + traits.sink * sweep.to.press + step.window.ride_below();
         let film = load.thickest() as f32 * traits.film_cells_per_quantum;
         let Some((from, to)) = low_bounds(step.head, sweep.to, traits, low + film) else {
@@ -238,7 +239,7 @@ impl Dab {
     }
 }
 
-/// The paints of which there is any on the brush's surface or on an area of the canvas.
+/// The paints on the brush's surface or on an area of the canvas.
 fn paints(step: &Step<'_>, area: Area) -> Vec<usize> {
     let lies = |slot: usize| {
         step.window.plane(slot).is_some_and(|plane| {
@@ -255,7 +256,7 @@ fn paints(step: &Step<'_>, area: Area) -> Vec<usize> {
         .collect()
 }
 
-/// The least area that holds both.
+/// The smallest area that contains both.
 fn joined(one: Area, other: Area) -> Area {
     if other.is_empty() {
         return one;

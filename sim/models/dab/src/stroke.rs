@@ -1,42 +1,42 @@
-//! Stroking algorithms (Baxter 2004, § 4.3): how a step's blends follow from the head before it and after it.
+//! Stroking algorithms (Baxter 2004, § 4.3): the blends of a step, from the heads before and after it.
 
 use maulstick_brush::HeadPose;
 use maulstick_model::brush::head::motion;
 use maulstick_model::interface::Sweep;
 
-/// A strip lower than this counts for the anchor point, cells.
-const NEAR: f32 = 3.0;
-/// What is near the surface may be beside its place in a drawing by so much, cells.
+/// Height below which a strip counts for the anchor point, cells.
+const ANCHOR_HEIGHT_CELLS: f32 = 3.0;
+/// Greatest distance of a part near the surface from its place in a drawing, cells.
 pub const SLACK: f32 = 0.5;
-/// A change of height counts so many times as much as one along the surface.
-pub const STEEP: f32 = 4.0;
+/// Weight of a change of height relative to one along the surface.
+pub const HEIGHT_WEIGHT: f32 = 4.0;
 
 /// Stroking algorithm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stroker {
-    /// Algorithm 1, STROKE-FASTER: the footprint at the end of the step is blended along the way of its anchor point, a
-    /// cell at a time.
+    /// Algorithm 1, STROKE-FASTER: the footprint at the end of the step is blended along the path of its anchor point,
+    /// cell by cell.
     Faster,
-    /// Algorithm 2, STROKE-BETTER: the head is interpolated a cell at a time, and each has its footprint. Where all of it goes
-    /// the same way, the drawing of one serves for those beside it ([`Course::runs`]).
+    /// Algorithm 2, STROKE-BETTER: the head is interpolated cell by cell, and each has its footprint. Where all its
+    /// parts move alike, one drawing serves for several ([`Course::runs`]).
     Better,
-    /// As [`Better`](Self::Better), but along a parabola through the head of the step before too: the spline of which
-    /// the text says that it would be a natural extension.
+    /// [`Better`](Self::Better) along a parabola through the head of the previous step too: the spline that the text
+    /// calls a natural extension.
     Spline,
 }
 
-/// Way of the head in a blend.
+/// Path of the head in a blend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Way {
-    /// As far as each strip moves in the step.
+    /// The motion of each strip in the step.
     OfStrips,
-    /// So many cells.
+    /// A number of cells.
     Cells(f32),
 }
 
 impl Way {
-    /// Way of a cell of the head in reference cells, of which a cell is `cell_per_reference`: a factor on the way of its strip
-    /// in the step, and a summand.
+    /// Path of a cell of the head in reference cells, with `cell_per_reference` reference cells per cell: a factor on
+    /// the motion of its strip in the step, and a summand.
     #[must_use]
     pub fn factors(self, cell_per_reference: f32) -> [f32; 2] {
         match self {
@@ -46,9 +46,9 @@ impl Way {
     }
 }
 
-/// Cuts a step into drawings of the head, and returns the way of its anchor point, cells. `draw` gets of each drawing the
-/// motion in whose middle the head is drawn, the places beside it at which it is blended, and the way of each blend; `poses`
-/// is room for the heads of a motion.
+/// Cuts a step into drawings of the head, and returns the path of its anchor point, cells. `draw` receives for each
+/// drawing the motion around it, the places beside it at which it is blended, and the path of each blend; `poses` is a
+/// buffer for the heads of a motion.
 pub fn each_drawing(
     sweep: &Sweep<'_>,
     stroker: Stroker,
@@ -86,7 +86,7 @@ pub fn each_drawing(
     length
 }
 
-/// The head at `t` of its way, 0 to 1: on the chord, or on the parabola through `before`, which it passed at −`ago`.
+/// The head at `t` of its path, 0 to 1: on the chord, or on the parabola through `before`, which it passed at −`ago`.
 pub fn between(sweep: &Sweep<'_>, bend: Option<(&HeadPose, f32)>, t: f32, into: &mut HeadPose) {
     let (from, to) = (sweep.from, sweep.to);
     let mix = |a: f32, b: f32| a + (b - a) * t;
@@ -95,7 +95,7 @@ pub fn between(sweep: &Sweep<'_>, bend: Option<(&HeadPose, f32)>, t: f32, into: 
         into.clear();
         into.extend(from.iter().zip(to).map(|(a, b)| mix(*a, *b)));
         let Some((before, ago)) = bend else { return };
-        // c·t·(t − 1) is nothing at both ends; c from where it was at −ago.
+        // c·t·(t − 1) vanishes at both ends; c follows from the head at −ago.
         let factor = t * (t - 1.0) / (ago * (ago + 1.0));
         for (value, (before, (from, to))) in into
             .iter_mut()
@@ -119,8 +119,8 @@ pub fn between(sweep: &Sweep<'_>, bend: Option<(&HeadPose, f32)>, t: f32, into: 
     into.bend = [0, 1].map(|i| mix(from.bend[i], to.bend[i]));
 }
 
-/// What a step's parabola goes through: the head of the step before, and how long ago that was by the length of this
-/// one. None where either hardly moves.
+/// The third point of a step's parabola: the head of the previous step, and its time before this one in lengths of this
+/// step. `None` where either hardly moves.
 #[must_use]
 pub fn bend<'a>(sweep: &Sweep<'a>) -> Option<(&'a HeadPose, f32)> {
     let before = sweep.before?;
@@ -129,25 +129,25 @@ pub fn bend<'a>(sweep: &Sweep<'a>) -> Option<(&'a HeadPose, f32)> {
     (own > 0.5 && (0.2..5.0).contains(&ago)).then_some((before, ago))
 }
 
-/// Way of a head in a step.
+/// Motion of a head in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Course {
-    /// Way of the anchor point, the mean of what is near the surface after the step, cells.
+    /// Motion of the anchor point, the mean of the parts near the surface after the step, cells.
     pub way: [f32; 2],
-    /// Of its parabola: at t it is by t·(t − 1) times this beside the chord, cells.
+    /// Bulge of its parabola: at t it is t·(t − 1) times this beside the chord, cells.
     pub bulge: [f32; 2],
-    /// The farthest that anything near the surface goes another way than the anchor point, cells; of height
-    /// [`STEEP`] times.
+    /// Greatest deviation of a part near the surface from the anchor point's motion, cells; height counts [`HEIGHT_WEIGHT`]
+    /// times.
     pub sway: f32,
 }
 
 impl Course {
-    /// That of a step.
+    /// Motion in a step.
     #[must_use]
     pub fn of(sweep: &Sweep<'_>, bend: Option<(&HeadPose, f32)>) -> Self {
         let (from, to) = (sweep.from, sweep.to);
         let near: Vec<usize> = (0..to.z.len().min(from.z.len()))
-            .filter(|i| to.z[*i] < NEAR)
+            .filter(|i| to.z[*i] < ANCHOR_HEIGHT_CELLS)
             .collect();
         let mean = |of: &dyn Fn(usize) -> f32| {
             near.iter().map(|i| of(*i)).sum::<f32>() / (near.len() as f32).max(1.0)
@@ -168,7 +168,7 @@ impl Course {
             };
             aside(0)
                 .max(aside(1))
-                .max(STEEP * chord(|pose| &pose.z, *i).abs())
+                .max(HEIGHT_WEIGHT * chord(|pose| &pose.z, *i).abs())
         };
         Self {
             way,
@@ -177,14 +177,14 @@ impl Course {
         }
     }
 
-    /// Where the anchor point is at `t`, 0 to 1, from where the step began, cells.
+    /// Place of the anchor point at `t`, 0 to 1, relative to the beginning of the step, cells.
     #[must_use]
     pub fn at(&self, t: f32) -> [f32; 2] {
         [0, 1].map(|i| self.way[i] * t + self.bulge[i] * (t * (t - 1.0)))
     }
 
-    /// The runs of a step of so many parts: as many as keep what is near the surface within [`SLACK`] of its place in the
-    /// drawing that serves for all of a run.
+    /// The runs of a step of `parts` parts: as many as keep the parts near the surface within [`SLACK`] of their place
+    /// in the run's drawing.
     pub fn runs(&self, parts: usize) -> impl Iterator<Item = Run> + use<> {
         let course = *self;
         let runs = ((course.sway * (0.5 / SLACK)).ceil() as usize).clamp(1, parts.max(1));
@@ -205,17 +205,17 @@ impl Course {
     }
 }
 
-/// Parts of a step for which one drawing of the head serves.
+/// Parts of a step with one drawing of the head.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// Where the part begins and ends in which the head is drawn, 0 to 1.
+    /// Beginning and end of the part around the drawing, 0 to 1.
     pub part: [f32; 2],
-    /// Where the head is in each of the parts, whole cells from there.
+    /// Place of the head in each of the parts, in whole cells from the drawing.
     pub shifts: Vec<[i64; 2]>,
 }
 
-/// Places along the way of an anchor point, in whole cells from its end: none at its beginning, where the step before
-/// ended.
+/// Places along the path of an anchor point, in whole cells from its end; none at its beginning, where the previous
+/// step ended.
 pub fn places(way: [f32; 2]) -> impl Iterator<Item = [i64; 2]> {
     let count = way[0].abs().max(way[1].abs()).ceil().max(1.0);
     (1..=count as usize).map(move |place| {
@@ -224,11 +224,11 @@ pub fn places(way: [f32; 2]) -> impl Iterator<Item = [i64; 2]> {
     })
 }
 
-/// Footprints of a step that is interpolated, one each cell: swept ones of longer steps would have every other cell of a
-/// fine canvas always under the same part of a bristle, and leave bare what is under a higher one.
+/// Number of footprints of an interpolated step, one a cell. Swept footprints of longer steps would keep every other
+/// cell of a fine canvas under the same part of a bristle, and leave cells under a higher one bare.
 #[must_use]
 pub fn parts(sweep: &Sweep<'_>) -> usize {
-    // A step that is a cell long but for rounding is one.
+    // A step that is a cell long, but for rounding, counts as one.
     (motion(sweep.from, sweep.to) - 0.05)
         .ceil()
         .clamp(1.0, 64.0) as usize

@@ -1,73 +1,73 @@
-//! Where and how deep brush and canvas meet (Baxter 2004, § 4.2): what of the brush is near enough to the top of the surface,
-//! with the film that it carries.
+//! Contact of brush and canvas and its depth (Baxter 2004, § 4.2): the parts of the brush near enough to the top of the
+//! surface, with their film.
 
 use maulstick_num::wide;
 
 use crate::transfer::{PLACES, RUN, run, sums};
 
-/// Share of a gap between brush and canvas up to which the brush's paint only bridges it: what lies on ridges sags into
-/// the hollows between them.
+/// Share of a gap between brush and canvas up to which the brush's paint only bridges it: paint on ridges sags into the
+/// hollows between them.
 pub const BRIDGED: f32 = 0.4;
 
-/// The brush over the cells of a row; planes may go on beyond it.
+/// The brush over the cells of a row; planes may extend beyond it.
 #[derive(Debug)]
 pub struct Brush<'a> {
-    /// Cells of the row.
+    /// Number of cells in the row.
     pub count: usize,
     /// Share of the cell that is covered.
     pub cover: &'a [f32],
-    /// Share of either side that goes over where they touch, and way, as of a [meeting](crate::transfer::Meeting).
+    /// Transferred share of either side, and path, as in a [meeting](crate::transfer::Meeting).
     pub rate: &'a [f32],
-    /// As there.
+    /// Path, as in a [meeting](crate::transfer::Meeting).
     pub way: &'a [f32],
-    /// Height of the middle line of the bristle as it was solved, cells.
+    /// Solved height of the bristle's middle line, cells.
     pub height: &'a [f32],
-    /// Height of its lower side over that, cells.
+    /// Height of its lower side over the middle line, cells.
     pub clearance: &'a [f32],
-    /// Its paints, quanta; from where the row begins.
+    /// Paints of the brush, quanta; the row starts at `start`.
     pub film: &'a [&'a mut [f32]],
-    /// Where the row begins in them.
+    /// Offset of the row in them.
     pub start: usize,
-    /// Depth to which it sinks into what it lies on, cells.
+    /// Depth to which it sinks into the surface below it, cells.
     pub sink: f32,
 }
 
 /// The canvas under it.
 #[derive(Debug)]
 pub struct Canvas<'a> {
-    /// Height of what catches paint, cells.
+    /// Height of the surface that catches paint, cells.
     pub base: &'a [f32],
-    /// Height of a bristle on it, cells.
+    /// Height of a bristle resting on it, cells.
     pub ride: &'a [f32],
     /// Its wet paints, quanta.
     pub wet: &'a [&'a mut [f32]],
-    /// Which of them is thinner.
+    /// Index of the thinner among them.
     pub thinner: Option<usize>,
-    /// Where the row begins in them.
+    /// Offset of the row in them.
     pub start: usize,
     /// Height of wet paint by its count, cells.
     pub cells_per_quantum: f32,
 }
 
-/// How they meet, a number for each cell of the row; see [`Meeting`](crate::transfer::Meeting).
+/// Contacts by cell of a row; see [`Meeting`](crate::transfer::Meeting).
 #[derive(Clone, Debug, Default)]
 pub struct Touching {
-    /// Share that goes over; 0 where they do not touch.
+    /// Transferred share; 0 without contact.
     pub rate: Vec<f32>,
-    /// Way; 0 where they do not touch.
+    /// Path; 0 without contact.
     pub way: Vec<f32>,
     /// Share of the canvas's paint that the brush reaches.
     pub reach: Vec<f32>,
     /// Gap that the brush's paint bridges, quanta.
     pub gap: Vec<f32>,
-    /// The cells that touch.
+    /// Number of touching cells.
     pub cells: f64,
-    /// Wet quanta on them, and those of them that are thinner.
+    /// Wet quanta on them, and those of thinner among them.
     pub wet: [f64; 2],
 }
 
 impl Touching {
-    /// Room for a row of so many cells and the rest of its last run; nothing is counted.
+    /// Resizes the buffers for a row and the rest of its last run, and resets the counts.
     pub fn begin(&mut self, cells: usize) {
         for plane in [
             &mut self.rate,
@@ -82,7 +82,7 @@ impl Touching {
 }
 
 wide! {
-    /// Finds where brush and canvas touch on a row, and counts it.
+    /// Finds the contacts of brush and canvas on a row, and counts them.
     ///
     /// A pressed bristle has its solved height at 0: it follows the ride into the valleys of the tooth, and is lifted by
     /// higher parts.

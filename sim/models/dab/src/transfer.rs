@@ -1,7 +1,7 @@
-//! Bidirectional transfer of one blend (Baxter 2004, § 4.5.2): of each side goes V_l = V_i·(1 − (1 − R)^T), in whole
-//! units, with all paints alike, so colours mix by the volumes.
+//! Bidirectional transfer of one blend (Baxter 2004, § 4.5.2): each side loses V_l = V_i·(1 − (1 − R)^T), in whole
+//! units, in the same proportion for all paints, so colours mix by volume.
 //!
-//! The text's sum V_i + T·R would create paint; as a power the result does not depend on how a way is cut.
+//! The text's sum V_i + T·R would create paint; as a power the result is independent of the subdivision of a path.
 
 use maulstick_canvas::quantum::QUANTA_PER_UNIT;
 use maulstick_model::interface::{Step, Transfer};
@@ -11,23 +11,23 @@ use maulstick_num::wide;
 use crate::dither::Dither;
 use crate::volume::{MOST, UNIT};
 
-/// What a blend may move, the same on all of its cells.
+/// Limits of a blend, equal for all its cells.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// Most quanta of a cell of the canvas to which the brush adds any.
+    /// Quanta on a cell of the canvas up to which the brush adds any.
     pub most: f32,
-    /// Quanta that stay on a cell.
+    /// Quanta that always stay on a cell.
     pub stain: f32,
-    /// 1 where both sides give their share, 0 where the brush leaves by its flow and takes nothing up.
+    /// 1 where both sides give their share, 0 where the brush deposits its flow and takes up nothing.
     pub exchanges: f32,
-    /// Units that it leaves besides along a reference cell.
+    /// Additional units deposited along a reference cell.
     pub flow: f32,
     /// True if the canvas loses no more than it gains.
     pub lasting: bool,
 }
 
 impl Limits {
-    /// Those of a step.
+    /// Limits of a step.
     #[must_use]
     pub fn of(step: &Step<'_>) -> Self {
         let flow = match step.handling.transfer {
@@ -47,27 +47,27 @@ impl Limits {
 /// Contact of brush and canvas on a cell, or on the cells of a run; paint in quanta.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Meeting<T = f32> {
-    /// Paint of the brush.
+    /// Paint of the brush, quanta.
     pub brush: T,
-    /// Paint of the canvas.
+    /// Paint of the canvas, quanta.
     pub canvas: T,
-    /// Share of either side that goes over, 1 − (1 − R)^T, by the share of the cell that is covered.
+    /// Transferred share of either side, 1 − (1 − R)^T, times the cover of the cell.
     pub rate: T,
-    /// Way of the brush by the share of the cell that is covered, reference cells.
+    /// Path of the brush, times the cover of the cell, reference cells.
     pub way: T,
     /// Share of the canvas's paint that the brush reaches.
     pub reach: T,
-    /// Gap between brush and canvas, which the brush's paint bridges.
+    /// Gap between brush and canvas, which the brush's paint bridges, quanta.
     pub gap: T,
 }
 
-/// Cells that are done together.
+/// Number of cells processed together.
 pub(crate) const RUN: usize = 8;
-/// Their places.
+/// Offsets of the cells in a run.
 pub(crate) const PLACES: [f32; RUN] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
-/// Quanta that go from the brush to the canvas, and from the canvas to the brush: whole units, as far as both sides
-/// have them and room for them.
+/// Quanta from the brush to the canvas, and from the canvas to the brush: whole units, as far as each side has them and
+/// the other has room.
 #[must_use]
 pub fn leaving(meeting: &Meeting, limits: &Limits, threshold: f32) -> [f32; 2] {
     let splat = Plain::splat;
@@ -104,7 +104,7 @@ impl<L: Lanes> Meeting<L> {
         let rate = rate * L::splat(limits.exchanges * (1.0 / UNIT));
         let given = free * rate + L::splat(limits.flow) * way;
         let taken = reached * rate;
-        // Half a turn apart: what leaves one side shall not go by what leaves the other.
+        // Half a turn apart, so that the rounding of both sides is independent.
         let opposite = threshold + threshold.less(half).choose(half, L::splat(-0.5));
         let given = whole(given, threshold).least(free);
         let taken = whole(taken, opposite).least(loose);
@@ -114,7 +114,7 @@ impl<L: Lanes> Meeting<L> {
     }
 }
 
-/// Cells of a row where the head is: how brush and canvas meet, a plane each.
+/// Cells of a row under the head: parameters of the contact, a plane each.
 #[derive(Debug)]
 pub struct Row<'a> {
     /// [`Meeting::rate`].
@@ -127,18 +127,18 @@ pub struct Row<'a> {
     pub gap: &'a [f32],
 }
 
-/// Paints of a row, by slot: planes, and where the row begins in them.
+/// Paints of a row, by slot: planes, and the offset of the row in them.
 #[derive(Debug)]
 pub struct Paints<'a, 'b> {
-    /// Of the brush.
+    /// Paints of the brush.
     pub brush: &'a mut [&'b mut [f32]],
-    /// Of the canvas, in the same order.
+    /// Paints of the canvas, in the same order.
     pub canvas: &'a mut [&'b mut [f32]],
-    /// Where the row begins in those of the brush, and in those of the canvas.
+    /// Offsets of the row in those of the brush, and in those of the canvas.
     pub starts: [usize; 2],
 }
 
-/// The cells of a run; 0 beyond the plane's end.
+/// Loads the cells of a run; 0 beyond the plane's end.
 #[inline(always)]
 pub(crate) fn run<L: Lanes>(plane: &[f32], at: usize) -> L {
     match plane.get(at..).and_then(|rest| rest.first_chunk()) {
@@ -155,7 +155,7 @@ fn last(plane: &[f32], at: usize) -> [f32; RUN] {
     run
 }
 
-/// Puts the cells of a run where they were, as far as the plane goes.
+/// Stores the cells of a run, up to the plane's end.
 #[inline(always)]
 fn put<L: Lanes>(plane: &mut [f32], at: usize, run: L) {
     let values = run.values();
@@ -177,7 +177,8 @@ pub(crate) fn sums<L: Lanes>(planes: &[&mut [f32]], at: usize) -> L {
 }
 
 wide! {
-    /// Blends a row whose first cell has this threshold: all paints of a side alike. Cells of the planes beyond the row stay.
+    /// Blends a row whose first cell has the threshold `first`, in the same proportion for all paints of a side. Cells
+    /// beyond the row are unchanged.
     pub fn blend<L>(row: &Row<'_>, limits: &Limits, first: f32, paints: &mut Paints<'_, '_>) {
         let (none, one) = (L::splat(0.0), L::splat(1.0));
         let count = row.rate.len();

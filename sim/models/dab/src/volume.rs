@@ -1,18 +1,18 @@
 //! Volumes: whole units of paint on a cell, 8 bits a layer (Baxter 2004, § 4.4).
 //!
 //! Paint is counted in quanta by slot as in every model; dAb moves it in units of [`UNIT`] of them. Additive colour is
-//! linear in the volumes of the paints, so what RGB textures would hold follows from the counts.
+//! linear in the volumes of the paints, so the RGB textures follow from the counts.
 
-/// Quanta of a unit: .76 µm on a cell. A unit more or less shall not be seen.
+/// Quanta of a unit: .76 µm on a cell, a difference that is not visible.
 pub const UNIT: f32 = 512.0;
-/// Most units of a layer: 195 µm. What a brush has on its surface beyond that waits there as in the reservoir.
+/// Most units of a layer: 195 µm. Any excess on a brush's surface waits there as in the reservoir.
 pub const MOST: f32 = 255.0;
-/// Units of the surface layer in one of the reservoir.
-pub const DEEP: f32 = 32.0;
-/// Units that hide what lies under them, 1/O_t of eq. 4.1: 49 µm.
+/// Units of the surface layer in one unit of the reservoir.
+pub const RESERVOIR_UNIT: f32 = 32.0;
+/// Units of an opaque layer, 1/O_t of eq. 4.1: 49 µm.
 pub const OPAQUE: f32 = 64.0;
 
-/// Units of so many quanta; more than a layer holds count as full.
+/// Units of a number of quanta; more than a layer's capacity counts as full.
 #[must_use]
 pub fn units(quanta: f32) -> u8 {
     (quanta / UNIT) as u8

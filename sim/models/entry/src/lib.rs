@@ -1,4 +1,5 @@
-//! Entry of a paint model in the registry: all that the rest of a rig asks of a model. Each model exports one.
+//! Entry of a paint model in the registry: the whole interface between a model and the rest of a rig. Each model
+//! exports one.
 //!
 //! With the feature `device` an entry also makes the model on a graphics device.
 //!
@@ -33,56 +34,56 @@ use maulstick_model::rheology::Rheology;
 /// Entry of a paint model in the registry.
 #[derive(Clone, Copy)]
 pub struct ModelEntry {
-    /// Its name in `rig.toml`, in the scene and in a document.
+    /// Name of the model in `rig.toml`, in the scene and in a document.
     pub name: &'static str,
-    /// Makes one that runs on the processor.
+    /// Constructor on the processor.
     pub make: fn() -> Box<dyn PaintModel>,
-    /// Makes one on a graphics device, if a device computes it.
+    /// Constructor on a graphics device, if the model has one.
     #[cfg(feature = "device")]
     pub make_on: Option<maulstick_gpu::MakeModel>,
-    /// How its paint is shown, and written as a solid.
+    /// Display of its paint, and its columns for solids.
     pub shown: &'static dyn ShowPaint,
-    /// Rheology of its paint, as the hand feels it.
+    /// Rheology of its paint, for the force on the hand.
     pub rheology: Rheology,
-    /// Its part where the choice of a model is left to the rig.
+    /// Role of the model where the rig chooses one.
     pub auto: Option<AutoRole>,
-    /// Panels that it adds to the sheet of effects.
+    /// Additional panels of the sheet of effects.
     pub panels: &'static [SheetPanel],
 }
 
-/// Part of a model where the choice is left to the rig.
+/// Role of a model where the rig chooses one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AutoRole {
-    /// A painting begins with it.
+    /// A new painting begins with it.
     First,
-    /// It is proposed where painting falls behind.
+    /// Proposed where painting falls behind.
     Lighter,
 }
 
-/// A panel of the sheet of effects that one model alone has.
+/// A panel of the sheet of effects for a single model.
 #[derive(Clone, Copy, Debug)]
 pub struct SheetPanel {
-    /// The effect.
+    /// Name of the effect.
     pub name: &'static str,
-    /// What is done.
+    /// Caption: the action shown.
     pub words: &'static str,
-    /// Draws it: its size and the side of its cells, mm; a pixel a cell.
+    /// Draws the panel; its size and the side of its cells are in mm, and a pixel is a cell.
     pub draw: fn([f64; 2], f64) -> Result<Picture, SheetError>,
 }
 
-/// A panel that cannot be drawn.
+/// Errors of drawing a panel.
 #[derive(Debug, thiserror::Error)]
 pub enum SheetError {
-    /// Its brush is rejected.
+    /// Its brush is invalid.
     #[error(transparent)]
     Brush(#[from] maulstick_brush::BrushError),
-    /// It has more cells than a surface.
+    /// Its cells exceed the limit of a surface.
     #[error("the figure has too many cells for one surface: choose larger cells")]
     TooLarge,
 }
 
 impl ModelEntry {
-    /// A model on the processor whose counts are shown as films.
+    /// An entry of a model on the processor whose counts are shown as films.
     #[must_use]
     pub const fn new(
         name: &'static str,

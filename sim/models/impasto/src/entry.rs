@@ -5,7 +5,7 @@ use maulstick_model_entry::{AutoRole, ModelEntry};
 
 use crate::stages::Impasto;
 
-/// The entry.
+/// Registry entry of `impasto`.
 pub const ENTRY: ModelEntry = ModelEntry {
     auto: Some(AutoRole::First),
     #[cfg(feature = "device")]

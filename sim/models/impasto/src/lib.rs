@@ -1,12 +1,13 @@
 //! IMPaSTo (Baxter 2004, ch. 6): how paint moves in one step of a brush on a surface.
 //!
-//! Pure: a window on counted paint, the head of a brush and its load go in; the same come out, and nothing is lost to
-//! the quantum. [`Impasto`] is one [`PaintModel`](maulstick_model::interface::PaintModel); [`stages`] holds its stages, a
-//! file each, and levelling at rest.
+//! Input and output are a window on counted paint, the head of a brush and its load; not a quantum is lost. [`Impasto`]
+//! is one [`PaintModel`](maulstick_model::interface::PaintModel); [`stages`] holds its stages, a file each, and
+//! levelling at rest.
 //!
-//! What a stroke leaves is decided where bristles lift off: a film that bridges a gap splits in its middle, and levels as
-//! far as the yield stress of worked paint lets it. Paint flows within the head each second step, strips in turn:
-//! all at once, or more seldom, each time shows along the stroke. `maulstick bench looks` measures ridges, streaks and films.
+//! The trace of a stroke is decided where bristles lift off: a film that bridges a gap splits in its middle, and levels
+//! as far as the yield stress of worked paint allows. Paint flows within the head every second step, with strips taking
+//! turns: all strips at once, or longer intervals, would show along the stroke. `maulstick bench looks` measures
+//! ridges, streaks and films.
 //!
 //! A loaded round brush drawn 10 mm over a level ground:
 //!
@@ -72,8 +73,8 @@
 //!
 //! # On a device
 //!
-//! Whole steps, with the feature `device`: an indirect dispatch skips the rest where nothing is touched; what is asked of one
-//! donor is summed in integers before it is truncated, so the books balance to zero.
+//! Whole steps, with the feature `device`: an indirect dispatch skips the rest where nothing is touched; the requests
+//! to one donor are summed in integers before they are truncated, so the ledger balances to zero.
 //!
 //! # Notes on the step
 //!
@@ -81,7 +82,7 @@
 //!   within strips and between neighbours take turns, step by step, so that no step shows along a stroke. Every stage
 //!   has an f64 oracle in `tests/oracle`, and every comparison a seeded fault.
 //! - Velocities are found for faces between cells; paint goes through them one axis after the other with van Leer's
-//!   limiter, truncated to quanta. Nothing divides what meets, so paint piles up. A global pressure would add to the
+//!   limiter, truncated to quanta. Nothing divides converging paint, so it piles up. A global pressure would add to the
 //!   velocities of the faces.
 //! - The squish −c·∇p is an explicit diffusion of coefficient c·h, bounded by .04. Central differences in cells grow
 //!   speckles above .2; differences across faces do not.
@@ -89,15 +90,15 @@
 //!   times as fast as films even out; a bridging film splits in its middle. So a full brush fills most of the tooth, an
 //!   empty one catches on peaks, a light one on dry ridges. A brush with a limit (a glaze) leaves up to as much again
 //!   in hollows, and has no limit on a palette, where paints are mixed.
-//! - A badger lets ten times as much film change places, so it softens. A blade floats on its paint by its pressure,
-//!   takes up what stands above its edge and fills what lies below: it scrapes and lays slabs.
-//! - Which strip is the lowest of a cell depends on the size of cells. So that what a brush leaves does not, paint
-//!   flows in every strip and seeps between neighbours, up to what the yield stress holds, which keeps streaks. Between
-//!   thinned strips it seeps half as fast, as it diffuses.
-//! - Levelling belongs to the stroke and lasts a second. Under moving bristles, a hundredth of a second a cell, nothing
-//!   levels that could be measured. Heights go through sixteen rounds before all paints follow by their sum; blocks in
-//!   which nothing flows rest; cells under .125 mm flow on coarser grids first. Paint just worked yields at 12 Pa;
-//!   thinner takes that away, and thinned paint wets bare ground.
+//! - A badger exchanges ten times as much film, so it softens. A blade floats on its paint by its pressure, takes up
+//!   what stands above its edge and fills what lies below: it scrapes and deposits slabs.
+//! - The lowest strip of a cell depends on the cell size. To keep the trace of a brush independent of it, paint flows
+//!   in every strip and seeps between neighbours, down to a difference held by the yield stress, which keeps streaks.
+//!   Between thinned strips it seeps half as fast, as in diffusion.
+//! - Levelling belongs to the stroke and lasts a second. Under moving bristles, a hundredth of a second a cell,
+//!   levelling is not measurable. Heights go through sixteen rounds before all paints follow by their sum; blocks
+//!   without flow rest; cells under .125 mm flow on coarser grids first. Paint just worked yields at 12 Pa; thinner
+//!   takes that away, and thinned paint wets bare ground.
 
 #[cfg(feature = "device")]
 pub mod device;

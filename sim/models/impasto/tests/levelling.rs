@@ -1,5 +1,5 @@
-//! Levelling beside Orchard's decay (1962) and the arrest of Smith, Orchard and Rhind-Tutt (1961), and what
-//! must hold of it whatever the paint is like.
+//! Levelling compared with Orchard's decay (1962) and the arrest of Smith, Orchard and Rhind-Tutt (1961), and its
+//! invariants for any paint.
 
 use std::f64::consts::PI;
 
@@ -25,7 +25,7 @@ const OIL: Body = Body {
     viscosity_pa_s: 20.0,
 };
 
-/// A film of so many metres by cell.
+/// A film whose height by cell is in metres.
 fn film(height_m: impl Fn(usize, usize) -> f64) -> Window {
     let mut store = TileStore::new([SIZE as u32; 2]);
     let all = store.around([0; 2], [SIZE as i64; 2]).expect("a surface");
@@ -40,7 +40,7 @@ fn film(height_m: impl Fn(usize, usize) -> f64) -> Window {
     window
 }
 
-/// A film with a ripple of so many cells along x.
+/// A film with a ripple of `cells` cells along x.
 fn rippled(mean_m: f64, ripple_m: f64, cells: usize) -> Window {
     film(|x, _| mean_m + ripple_m * cos(2.0 * PI * (x as f64 + 0.5) / cells as f64))
 }
@@ -60,18 +60,18 @@ fn amplitude(window: &Window, cells: usize) -> f64 {
     wave.sum::<f64>() / cells as f64
 }
 
-/// How a film levels.
+/// Parameters of levelling.
 #[derive(Clone, Copy)]
 struct Rest {
     body: Body,
     seconds: f64,
     rounds: usize,
-    /// Of them heights alone go through so many at a time.
+    /// Number of rounds of heights alone at a time.
     at_once: usize,
     thinner: Option<usize>,
     /// Share of a cell below which a block rests.
     rests: f32,
-    /// Quanta at which a cell counts as bare.
+    /// Quanta at or below which a cell counts as bare.
     bare: f32,
     cell_m: f64,
 }
@@ -90,7 +90,7 @@ impl Rest {
         }
     }
 
-    /// Levels all of a window.
+    /// Levels a whole window.
     fn level(&self, window: &mut Window) {
         let area = Area {
             from: [0; 2],
@@ -131,8 +131,8 @@ fn quanta(window: &Window) -> u64 {
         .sum()
 }
 
-/// What is left of a ripple of a tenth of the film after 7/10 of its time, and what Orchard has: γh³k⁴/3η,
-/// with the film's weight beside its tension. The film is so thick that what flows in a round is many quanta.
+/// Share left of a ripple of a tenth of the film after 7/10 of its decay time, and Orchard's: γh³k⁴/3η, with the film's
+/// weight beside its tension. The film is so thick that the flow of a round is many quanta.
 fn decay(body: Body) -> [f64; 2] {
     let (mean, ripple, cells) = (2e-3, 200e-6, 16);
     let k = 2.0 * PI / (cells as f64 * CELL_M);
@@ -159,7 +159,7 @@ fn a_ripple_decays_as_orchard_has_it() {
     }
 }
 
-/// On fine cells the rounds of a second are too few for long waves: coarser grids carry those.
+/// On fine cells the rounds of a second are too few for long waves, which coarser grids level.
 #[test]
 fn coarser_grids_level_what_fine_cells_cannot() {
     let (mean, ripple, cells) = (300e-6, 10e-6, 16);
@@ -212,8 +212,8 @@ fn a_ripple_is_arrested_at_the_yield_stress() {
     );
 }
 
-/// A wide sheet that stands on a level film beside a ripple: blocks at rest leave out what hardly flows, and wake
-/// when what flows beside them comes.
+/// A wide sheet on a level film beside a ripple: blocks at rest skip negligible flow, and wake when their neighbours'
+/// flow arrives.
 #[test]
 fn what_rests_changes_nothing() {
     let levelled = |rests: f32| {
@@ -243,7 +243,7 @@ fn what_rests_changes_nothing() {
     assert!(coarse > 1e-6, "a film that hardly levels passes: {coarse}");
 }
 
-/// Heights alone go through many rounds: paint comes to lie where it would if it had followed in each.
+/// Heights alone go through many rounds, with the same result as if paint had followed in each.
 #[test]
 fn paint_may_follow_later() {
     let levelled = |rounds: usize, at_once: usize| {
@@ -275,7 +275,7 @@ fn paint_may_follow_later() {
     assert!(later < 2e-6 && later < 0.5 * shorter, "{later} {shorter}");
 }
 
-/// A heap that stands alone: none is lost, also where it stands at an edge of the area that levels.
+/// An isolated heap: none is lost, also at an edge of the levelled area.
 #[test]
 fn nothing_is_created_or_lost() {
     let areas = [
@@ -308,8 +308,8 @@ fn nothing_is_created_or_lost() {
     }
 }
 
-/// A film that ends: bare ground beside it stays bare below the slope at which an edge advances, and is wet
-/// beyond it.
+/// A film that ends: bare ground beside it stays bare below the slope at which an edge advances, and is wetted above
+/// it.
 #[test]
 fn an_edge_advances_only_down_a_steep_slope() {
     for (slope, bare) in [(0.95, true), (1.1, false)] {
@@ -323,7 +323,7 @@ fn an_edge_advances_only_down_a_steep_slope() {
         let mut beside = beside.filter(|at| at.iter().any(|i| !(40..90).contains(i)));
         let wet = beside.any(|[x, y]| height(&window, x, y) > 0.0);
         assert_eq!(!wet, bare, "a slope of {slope}");
-        // A stain is bare ground, and stays what it is.
+        // A stain is bare ground, and stays unchanged.
         let stain = 2000.0;
         let mut window = film(|x, _| if x < 64 { edge } else { stain * QUANTUM_M });
         let rest = Rest {
@@ -336,8 +336,8 @@ fn an_edge_advances_only_down_a_steep_slope() {
     }
 }
 
-/// Thinned paint yields sooner and is more fluid: the more thinner, the less of a ripple is left; half of it
-/// takes the yield stress away.
+/// Thinned paint yields sooner and is more fluid: more thinner leaves less of a ripple, and one half removes the yield
+/// stress.
 #[test]
 fn thinned_paint_levels_further() {
     let (mean, ripple, cells) = (300e-6, 20e-6, 8);
@@ -389,8 +389,7 @@ fn thinned_paint_levels_further() {
     assert!((yields - never).abs() < 0.01, "{yields} {never}");
 }
 
-/// Yield stresses and viscosities of 0 and of 10⁶: all is finite, nothing is lost, and what cannot flow
-/// does not.
+/// Yield stresses and viscosities of 0 and of 10⁶: all is finite, nothing is lost, and paint that cannot flow does not.
 #[test]
 fn extreme_bodies_stay_finite() {
     for yield_pa in [0.0, 80.0, 1e6] {

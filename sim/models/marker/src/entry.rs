@@ -6,7 +6,7 @@ use maulstick_model_entry::ModelEntry;
 use crate::matte::Matte;
 use crate::step::Marker;
 
-/// Ink of a few mPa·s, which bears nothing.
+/// Rheology of ink: a few mPa·s, without a yield stress.
 const RHEOLOGY: Rheology = Rheology {
     viscosity_m2_s: 5e-6,
     thinning: 0.0,
@@ -14,7 +14,7 @@ const RHEOLOGY: Rheology = Rheology {
     yields: |_| 0.0,
 };
 
-/// The entry.
+/// Registry entry of `marker`.
 pub const ENTRY: ModelEntry = ModelEntry {
     shown: &Matte,
     ..ModelEntry::new("marker", || Box::new(Marker::default()), RHEOLOGY)

@@ -1,5 +1,5 @@
-//! The film of a marker: each covered cell is filled up towards [`FILM_M`], in proportion to its cover, with the mixture
-//! of the whole tip. In the brush mode `marker` a step lays at most flow · travel.
+//! The film of a marker: each covered cell is filled up towards [`FILM_M`], in proportion to its cover, with the
+//! mixture of the whole tip. In the brush mode `marker` a step deposits at most flow · travel.
 
 use maulstick_canvas::quantum::{Counts, QUANTA_PER_UNIT, QUANTUM_M, SLOTS};
 use maulstick_model::brush::load::BrushLoad;
@@ -23,7 +23,7 @@ pub(crate) struct Film {
 }
 
 impl Film {
-    /// Lays the film of a step and returns the quanta laid, by slot.
+    /// Deposits the film of a step and returns the quanta deposited, by slot.
     pub(crate) fn lay(&mut self, footprint: &Footprint, step: &mut Step<'_>) -> Counts {
         let held = step.load.counts();
         let total: u64 = held.iter().sum();
@@ -63,7 +63,7 @@ impl Film {
         given
     }
 
-    /// Takes the paint laid out of the tip, the same share from each texel.
+    /// Removes the deposited paint from the tip, the same share from each texel.
     pub(crate) fn draw(&self, given: &Counts, load: &mut BrushLoad) {
         let held = load.counts();
         for slot in 0..SLOTS {
@@ -76,7 +76,7 @@ impl Film {
                 let alike = (f64::from(*texel) * share) as u64;
                 left -= take(texel, alike.min(left));
             }
-            // What rounding leaves over comes from the first texels that have it.
+            // The rounding remainder comes from the first texels that have it.
             for texel in film.iter_mut().chain(inside) {
                 left -= take(texel, left.min(u64::from(*texel)));
             }

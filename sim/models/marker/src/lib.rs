@@ -1,9 +1,9 @@
-//! A felt marker: it leaves an even film of the brush's colour, at most [`FILM_M`] thick, and neither pushes paint nor
-//! takes any up.
+//! A felt marker: it deposits an even film of the brush's colour, at most [`FILM_M`] thick, and neither pushes paint
+//! nor takes any up.
 //!
 //! The smallest [`PaintModel`](maulstick_model::interface::PaintModel) that paints, and the one to copy for another:
-//! footprint, head and load are those of every model, [`Marker`] is the step, [`Matte`] how its ink is shown, [`ENTRY`] what the
-//! registry takes.
+//! footprint, head and load are those of every model, [`Marker`] is the step, [`Matte`] the appearance of its ink,
+//! [`ENTRY`] its entry in the registry.
 //!
 //! A stroke with a full marker; going over it again adds little:
 //!

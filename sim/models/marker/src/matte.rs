@@ -1,4 +1,4 @@
-//! Ink as it is shown: films of its paints, without gloss.
+//! Appearance of ink: films of its paints, without gloss.
 
 use maulstick_appearance::display::DisplayTile;
 use maulstick_appearance::show_paint::{Seen, ShowPaint};

@@ -6,7 +6,7 @@ use maulstick_model::modes::{sample, vacuum};
 
 use crate::film::Film;
 
-/// The paint model `marker`, with room for its step.
+/// The paint model `marker`, with the buffers of its step.
 #[derive(Debug, Default)]
 pub struct Marker {
     footprint: Footprint,

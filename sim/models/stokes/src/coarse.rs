@@ -1,8 +1,8 @@
-//! The grid on which the flow around a brush is found: cubes of several voxels, from which velocities come back to the faces
-//! of the voxels.
+//! The grid of the flow around a brush: cubes of several voxels, whose velocities are interpolated to the faces of the
+//! voxels.
 //!
-//! Paint is moved voxel by voxel, so the marks of bristles are as fine as the cells of the surface, and the flow that carries
-//! them is as wide as a brush makes it (Baxter 2004, § 5.6).
+//! Paint is moved voxel by voxel, so the marks of bristles are as fine as the cells of the surface, while the flow
+//! varies on the scale of a brush (Baxter 2004, § 5.6).
 
 use maulstick_stokes::domain::Solids;
 use maulstick_stokes::flow::Conditions;
@@ -32,7 +32,7 @@ pub struct Coarse {
     pub side: usize,
     /// Fill of each cell.
     pub fill: Vec<f32>,
-    /// What the paint lies on; bristles as they are [added](Self::resist).
+    /// Base of the paint; bristles are [added](Self::resist).
     pub solids: Solids,
     /// Paint of each cell, in voxels.
     paint: Vec<f32>,
@@ -41,13 +41,12 @@ pub struct Coarse {
 }
 
 impl Coarse {
-    /// The paint of an area, so many voxels to the side of a cell; `open` is the share of each voxel that is, `totals` its
-    /// quanta.
+    /// The paint of an area on cells of `side` voxels; `open` is the open share of each voxel, `totals` its quanta.
     #[must_use]
     pub fn of(voxels: &Voxels, (open, totals): (&[f32], &[u32]), side: usize) -> Self {
         let fine = voxels.volume.grid;
         let mut cells = fine.cells.map(|cells| cells.div_ceil(side));
-        // The air that the voxels have above the paint may be less than such a cell.
+        // The voxels' layers of air above the paint may be less than one such cell.
         cells[2] += usize::from(side > voxels.side());
         let grid = Grid::walled(cells);
         let capacity = voxels.volume.capacity as f32;
@@ -76,7 +75,7 @@ impl Coarse {
         }
     }
 
-    /// Adds bristles that hold so much paint of a voxel, in voxels: their resistance h²/K for a cell of this grid, and their
+    /// Adds bristles in so much paint of a voxel, in voxels: their resistance h²/K for a cell of this grid, and their
     /// velocity along the surface, m/s.
     pub fn resist(
         &mut self,
@@ -92,7 +91,7 @@ impl Coarse {
         }
     }
 
-    /// Puts the bristles on the faces between cells.
+    /// Averages the bristles onto the faces between cells.
     pub fn hold(&mut self) {
         let grid = self.grid;
         let cells = &self.resistance;
@@ -117,7 +116,7 @@ impl Coarse {
         self.solids.resistance = Some(resistance);
     }
 
-    /// The window whose flow is wanted.
+    /// The window of the flow.
     #[must_use]
     pub fn window<'a>(&'a self, conditions: &'a Conditions) -> FlowWindow<'a> {
         FlowWindow {
@@ -128,7 +127,7 @@ impl Coarse {
         }
     }
 
-    /// Velocities on the faces of the voxels, between those on the faces of this grid.
+    /// Velocities on the faces of the voxels, interpolated from the faces of this grid.
     #[must_use]
     pub fn refine(&self, velocity: &[Vec<f32>; 3], fine: &Grid) -> [Vec<f32>; 3] {
         if self.side == 1 {
@@ -157,15 +156,16 @@ impl Coarse {
         })
     }
 
-    /// For the faces across an axis of voxels along another one: the cell before each, and how far on from that it is.
+    /// For the faces across an axis of voxels along another one: the cell before each, and its distance beyond it.
     fn places(&self, along: usize, axis: usize, fine: &Grid) -> Vec<(isize, f32)> {
         let (side, last) = (self.side as f32, self.grid.cells[along] as isize);
         let count = fine.cells[along] + usize::from(along == axis);
         let place = |at: usize| {
-            // Along its own axis a face lies on a face, across it in the middle of cells.
-            let at = match along == axis {
-                true => at as f32 / side,
-                false => (at as f32 + 0.5) / side - 0.5,
+            // Along its own axis a face coincides with a face, across it it is in the middle of cells.
+            let at = if along == axis {
+                at as f32 / side
+            } else {
+                (at as f32 + 0.5) / side - 0.5
             };
             let low = at.floor();
             ((low as isize).clamp(-1, last), at - low)
@@ -174,7 +174,7 @@ impl Coarse {
     }
 }
 
-/// What the paint lies on, at the corners of the cells.
+/// Base of the paint, at the corners of the cells.
 fn relief(grid: &Grid, side: usize, voxels: &Voxels) -> Solids {
     let mut solids = Solids::walls(grid);
     let plane = grid.stride(2);

@@ -1,4 +1,4 @@
-//! Columns of ground, dry and wet paint over the cells of a tile, with the air under what overhangs.
+//! Columns of ground, dry and wet paint over the cells of a tile, with the air under overhangs.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::film::{Film, film};
 use crate::layer_planes::{place_of, value};
 use crate::layers::Layers;
 
-/// Whether paint of a tile lies in layers.
+/// True if paint of a tile is in several layers.
 #[must_use]
 pub(crate) fn has_layers(tile: &Tile) -> bool {
     tile.pages().any(|page| is_layered(&page.get()))
@@ -20,9 +20,9 @@ fn is_layered(planes: &Planes) -> bool {
     planes.own().iter().any(|own| place_of(own.shape).is_some())
 }
 
-/// The columns of a tile in which there is air under paint, by cell: their ends in m above the highest bare peaks. The first
-/// is the top of what lies on the ground, then come bottom and top of each piece over air. A film lies on the highest of
-/// what dried before it.
+/// The columns of a tile that contain air under paint, by cell: their ends in m above the highest bare peaks. The first
+/// is the top of the paint on the ground; bottom and top of each piece over air follow. A film lies on the highest
+/// paint that dried before it.
 #[must_use]
 pub fn tile_columns(
     relief: &Relief,
@@ -52,10 +52,10 @@ pub fn tile_columns(
     columns
 }
 
-/// Films of a tile, one over the other; heights in cells above the highest bare peaks.
+/// Stack of a tile's films; heights in cells above the highest bare peaks.
 struct FilmStack {
     layers: Layers,
-    /// Floor of the next film: its height if no paint were over air.
+    /// Floor of the next film, without pieces over air.
     floors: Vec<f32>,
     /// Tops of columns of one piece.
     tops: Vec<f32>,
@@ -112,20 +112,20 @@ impl FilmStack {
     }
 }
 
-/// Plane of a model's own: index of its paint, layer, bytes.
+/// One of the model's own planes: index of its paint, layer, bytes.
 type LayerPlane<'a> = (usize, usize, &'a [u8]);
 
 /// The paint of a film over one cell.
 #[derive(Default)]
 struct Column {
-    /// Quanta of each paint that are in no layer above the lowest.
+    /// Quanta of each paint that are not in a layer above the lowest.
     left: Vec<f32>,
-    /// Quanta of all paints, layer after layer from the lowest on.
+    /// Quanta of all paints by layer, from the lowest on.
     fills: Vec<f32>,
 }
 
 impl Column {
-    /// Reads a cell whose lowest open layer is `lowest`, and returns its quanta in all.
+    /// Reads a cell whose lowest open layer is `lowest`, and returns all its quanta.
     fn read(&mut self, planes: &Planes, own: &[LayerPlane<'_>], cell: usize, lowest: usize) -> f32 {
         self.left.clear();
         self.left
@@ -133,7 +133,7 @@ impl Column {
         let total = self.left.iter().sum();
         self.fills.clear();
         self.fills.push(0.0);
-        // From the lowest layer up: quanta that the counts no longer have were taken from the top.
+        // From the lowest layer up: quanta that the counts lack were taken from the top.
         for (paint, layer, bytes) in own.iter().filter(|(_, layer, _)| *layer > lowest) {
             let quanta = (value(bytes, cell) as f32).min(self.left[*paint]);
             if quanta > 0.0 {

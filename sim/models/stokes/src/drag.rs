@@ -1,10 +1,10 @@
-//! Paint dragged along by a brush: its bristles are a porous body that paint goes through with a resistance (Baxter 2004,
-//! § 5.4.2, permeability; Brinkman 1949), and the flow around them is the solver's.
+//! Paint dragged along by a brush: its bristles are a porous body with a resistance to paint (Baxter 2004, § 5.4.2,
+//! permeability; Brinkman 1949), and the solver computes the flow around them.
 //!
-//! Paint has no memory from one step to the next: its inertia is a thousandth of what viscosity does to it, and what a step
-//! does follows from the paint and the step alone. For the same reason only the way of a brush counts, not how long it took:
-//! steps are solved at one speed. Under a brush paint is sheared a hundred times in a second, so what stress it yields at
-//! does not matter there.
+//! Paint has no memory from one step to the next: its inertia is a thousandth of its viscous forces, so the result of a
+//! step follows from the paint and the step alone. For the same reason only the path of a brush counts, not its
+//! duration: steps are solved at one speed. Under a brush the shear rate is about 100/s, so the yield stress does not
+//! matter there.
 
 use maulstick_impasto::stages::levelling::Body;
 use maulstick_model::footprint::Footprint;
@@ -18,9 +18,9 @@ use crate::coarse::Coarse;
 use crate::flow_backend::BrushFlow;
 use crate::voxels::Voxels;
 
-/// Speed at which a brush is taken to go, m/s.
+/// Assumed speed of a brush, m/s.
 const SPEED_M_S: f64 = 0.1;
-/// Steps of a brush for each of the flow: less than a cell of its grid.
+/// Number of steps of a brush for each step of the flow: less than a cell of its grid.
 pub const STEPS: u32 = 2;
 /// Density of oil paint, kg/m³.
 pub(crate) const DENSITY_KG_M3: f64 = 1500.0;
@@ -28,10 +28,10 @@ pub(crate) const DENSITY_KG_M3: f64 = 1500.0;
 const GRAVITY_M_S2: f64 = 9.81;
 /// Permeability of bristles, m².
 const BRISTLES_M2: f64 = 6e-8;
-/// The same of a blade, through which nothing goes.
+/// Permeability of a blade, m²: practically closed.
 const BLADE_M2: f64 = 2e-10;
 
-/// Moves the paint of an area as the brush's contacts, the bristles of which are at these heights, drag it along in a step.
+/// Moves the paint of an area, dragged in a step by the brush's contacts, whose bristles have these heights.
 pub fn drag(
     flow: &mut BrushFlow,
     voxels: &mut Voxels,
@@ -74,7 +74,8 @@ pub fn drag(
     voxels.drop_loose();
 }
 
-/// Where bristles are after a drag: each at the same height, and as deep in the paint, or as high above it, as it now lies.
+/// Updates the contacts after a drag: each bristle keeps its height, and gets its depth in the moved paint, or its gap
+/// above it.
 pub fn follow(voxels: &Voxels, footprint: &mut Footprint, bottoms: &[f32], width: usize) {
     for (contact, bottom) in footprint.contacts.iter_mut().zip(bottoms) {
         let column = voxels.column_of(contact.cell as usize, width);
@@ -95,7 +96,7 @@ pub fn bottoms(voxels: &Voxels, footprint: &Footprint, width: usize) -> Vec<f32>
     footprint.contacts.iter().map(height).collect()
 }
 
-/// Puts the bristles of the contacts where they are in the paint: from where each is up.
+/// Adds the bristles of the contacts to the paint, upward from their height.
 fn hold<'a>(
     voxels: &Voxels,
     coarse: &mut Coarse,

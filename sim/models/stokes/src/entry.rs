@@ -8,8 +8,7 @@ use crate::drag::DENSITY_KG_M3;
 use crate::overhangs::Overhangs;
 use crate::step::StokesPaint;
 
-/// Paint of the viscosity with which it flows around a brush; films yield and are thinned as those of `impasto`, which
-/// levels them.
+/// Registry entry of `stokes`.
 const RHEOLOGY: Rheology = Rheology {
     viscosity_m2_s: Body::TUBE.viscosity_pa_s / DENSITY_KG_M3,
     ..Rheology::TUBE

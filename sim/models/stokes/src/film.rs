@@ -7,7 +7,7 @@
 const ISOVALUE: f32 = 0.5;
 /// Greatest fill of a voxel of air.
 const MAX_AIR_FILL: f32 = 0.02;
-/// Thickness below which paint over air is put down on what is below it, cells.
+/// Thickness below which paint over air is merged with the piece below it, cells.
 const MIN_FLOATING: f32 = 0.1;
 
 /// The paint of a film in a column; heights in cells above the floor of the film.
@@ -19,11 +19,12 @@ pub(crate) struct Film {
     pub(crate) floating: Vec<[f32; 2]>,
 }
 
-/// The film whose paint fills these voxels from the lowest up. Of the lowest `room` cells are open, of the others all.
+/// The film with these fills of voxels from the lowest up. Of the lowest voxel the share `room` is open, the others are
+/// open entirely.
 pub(crate) fn film(fills: &[f32], room: f32) -> Film {
     let mut film = Film::default();
     let is_paint = |k: usize| fills[k] >= ISOVALUE * if k == 0 { room } else { 1.0 };
-    // Below the lowest voxel there is the floor.
+    // Below the lowest voxel is the floor.
     let mut touches = true;
     let mut k = 0;
     while k < fills.len() {
@@ -63,8 +64,8 @@ pub(crate) fn film(fills: &[f32], room: f32) -> Film {
     film.without_overlap()
 }
 
-/// Bottom and top of the paint in voxels from `first` on, as thick as it is, around its centre of mass: that of the lowest
-/// touches the one above it, that of the highest the one below it.
+/// Bottom and top of the paint in voxels from `first` on, with its thickness, around its centre of mass; the lowest
+/// piece touches the voxel above, the highest the one below.
 fn extent(fills: &[f32], first: usize, room: f32) -> [f32; 2] {
     let last = fills.len() - 1;
     let (mut sum, mut moment) = (0.0, 0.0);
@@ -103,7 +104,7 @@ impl Film {
         self.floating.push(interval);
     }
 
-    /// The film with pieces that would overlap stacked on each other.
+    /// The film with overlapping pieces stacked on each other.
     fn without_overlap(self) -> Self {
         let mut film = Self {
             lying: self.lying,
@@ -152,7 +153,7 @@ mod tests {
             // A gap that is less than half full.
             (&[1.0, 0.2, 1.0], 1.0, 1.1, &[[1.9, 3.0]]),
             (&[0.5, 0.0, 0.01, 0.0, 0.05], 1.0, 0.56, &[]),
-            // What is too full needs room.
+            // An overfull voxel needs room.
             (&[2.5, 0.0, 1.0, 0.0, 1.0], 1.0, 3.5, &[[4.0, 5.0]]),
             (&[], 1.0, 0.0, &[]),
         ];

@@ -1,4 +1,4 @@
-//! Backends of the flow around a brush: the processor, and a device that may have no room for a window or be lost.
+//! Backends of the flow around a brush: the processor, and a device that may lack memory for a window or be lost.
 
 use std::fmt;
 
@@ -8,44 +8,43 @@ use maulstick_types::paint::Decision;
 
 use crate::coarse::{Coarse, FlowWindow};
 
-/// Cells of an axis from which down a window is not made coarser.
+/// Number of cells along an axis at or below which a window is not coarsened.
 const FEWEST_CELLS: usize = 4;
 
 /// Why a backend has not found the flow of a window.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FlowError {
-    /// It has no room for so many cells.
+    /// The window needs more memory than there is.
     #[error("a window needs {} MiB in one piece, and there are at most {}", needs.div_ceil(1 << 20), most >> 20)]
     TooLarge {
-        /// Bytes that the window needs.
+        /// Bytes needed.
         needs: u64,
-        /// Bytes that there are.
+        /// Bytes available.
         most: u64,
     },
-    /// It is gone for good.
+    /// The backend is lost.
     #[error("{0}")]
     Lost(String),
 }
 
-/// A backend of the flow beside the processor.
+/// A backend of the flow other than the processor.
 pub trait FlowBackend: fmt::Debug + Send {
-    /// Its name: `gpu` and the adapter's.
+    /// Name for the log: `gpu` and the adapter's.
     fn name(&self) -> String;
 
-    /// True if it finds the flow of such a window sooner than the processor.
+    /// True if it is faster than the processor for such a window.
     fn is_faster(&self, window: &FlowWindow<'_>) -> bool;
 
-    /// Velocity on the lower faces of each axis after one step from rest, m/s, on the grid's places.
+    /// Velocity on the lower faces of each axis after one step from rest, m/s, in the grid's layout.
     ///
-    /// # Errors
-    /// A [`FlowError`]; nothing is found then.
+    /// # Errors A [`FlowError`], without a result.
     fn flow(&mut self, window: &FlowWindow<'_>) -> Result<&[Vec<f32>; 3], FlowError>;
 }
 
-/// The flow of the windows of a brush, by whichever backend there is; nothing of it lasts from one to the next.
+/// The flow of a brush's windows, by any backend; no state lasts from one to the next.
 #[derive(Debug, Default)]
 pub struct BrushFlow {
-    /// Room of the processor.
+    /// Buffers of the processor.
     processor: Option<Flow>,
     device: Option<Box<dyn FlowBackend>>,
     fall: Option<String>,
@@ -54,7 +53,7 @@ pub struct BrushFlow {
 }
 
 impl BrushFlow {
-    /// Found by a device where that is faster, until it is lost.
+    /// Flow on a device where that is faster, until it is lost.
     #[must_use]
     pub fn on(device: Box<dyn FlowBackend>) -> Self {
         Self {
@@ -63,7 +62,7 @@ impl BrushFlow {
         }
     }
 
-    /// Name of the backend, and whether it has no room for some windows.
+    /// Name of the backend, and the note that some windows do not fit.
     #[must_use]
     pub fn backend(&self) -> String {
         match &self.device {
@@ -73,18 +72,18 @@ impl BrushFlow {
         }
     }
 
-    /// The reason why the device is no longer used, returned once.
-    pub fn take_fall(&mut self) -> Option<String> {
+    /// Returns the reason of the switch from the device to the processor, once.
+    pub fn take_backend_change(&mut self) -> Option<String> {
         self.fall.take()
     }
 
-    /// That flow is found on coarser cells, and why; returned once.
+    /// Returns the decision to use coarser cells, with its reason, once.
     pub fn take_limit(&mut self) -> Option<Decision> {
         self.limit.take()
     }
 
-    /// Velocities on the faces of voxels, found on cells of `side` voxels or, where the device has no room for so many, on
-    /// cells twice as wide, and so on. `scene` makes the window for a side.
+    /// Velocities on the faces of voxels, on cells of `side` voxels or, where the device lacks memory, on cells twice
+    /// as wide, and so on. `scene` makes the window for a side.
     pub fn find(
         &mut self,
         fine: &Grid,
@@ -128,10 +127,9 @@ impl BrushFlow {
     }
 }
 
-/// Velocities on the faces of voxels by a device, and why it refused the window as it was.
+/// Velocities on the faces of voxels by a device, and its reason for refusing the original window.
 ///
-/// # Errors
-/// That the device is lost, or the refusal where it has no room for the coarsest window either.
+/// # Errors The device is lost, or the coarsest window does not fit either.
 fn solve(
     device: &mut dyn FlowBackend,
     fine: &Grid,

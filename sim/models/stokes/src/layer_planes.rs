@@ -1,9 +1,8 @@
-//! Paint that lies in layers over each other: a plane of the model's own for each paint and layer above the lowest.
+//! Paint in layers of voxels: a separate plane of the model for each paint and layer above the lowest.
 //!
-//! A layer is a cell high. The counts of a page say how much of a paint lies on a cell in all; a plane here says how much of
-//! it lies in one layer above the lowest in which the cell has paint, and all the rest lies in that. So films thinner
-//! than a cell need no planes, and whoever changes counts without knowing of layers changes the lowest one, or takes from the
-//! highest.
+//! A layer is a cell high. The counts of a page are all of a paint on a cell; a plane here is its part in one layer
+//! above the cell's lowest, and the rest is in the lowest. So films thinner than a cell need no planes, and code that
+//! changes counts without layers changes the lowest one, or takes from the highest.
 
 use maulstick_canvas::own_plane::{LAYERS_MOST, OwnShape, ValueType};
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
@@ -12,7 +11,7 @@ use maulstick_num::exp_f32;
 
 /// Kind of the plane of the first paint in the first layer.
 const FIRST: usize = 0x4000;
-/// Colour comes from the top: what lies under so much paint counts by 1/e, m.
+/// Thickness over which the visibility of paint below falls to 1/e, m.
 const SEEN_M: f32 = 150e-6;
 
 /// The plane of a paint in a layer.
@@ -25,7 +24,7 @@ pub const fn shape_of(slot: usize, layer: usize) -> OwnShape {
     }
 }
 
-/// Slot and layer of a plane, if it is one of a layer.
+/// Slot and layer of a plane; `None` if it is no layer's.
 #[must_use]
 pub const fn place_of(shape: OwnShape) -> Option<(usize, usize)> {
     let is_layer = matches!(shape.values, ValueType::F32) && shape.per_cell == 1;
@@ -35,7 +34,7 @@ pub const fn place_of(shape: OwnShape) -> Option<(usize, usize)> {
     }
 }
 
-/// Quanta of a cell of a plane; 0 where they are no count.
+/// Quanta of a cell of a plane; 0 where the bytes are not a valid count.
 #[must_use]
 #[inline]
 pub fn value(bytes: &[u8], cell: usize) -> u32 {
@@ -43,8 +42,8 @@ pub fn value(bytes: &[u8], cell: usize) -> u32 {
     f32::from_le_bytes(bytes.unwrap_or_default()) as u32
 }
 
-/// Thickness of each paint as it is seen from above, m, by slot, for planes some of which are of layers: as thick in all as
-/// the paint is, and mixed as its upper layers are. `None` for paint in one layer.
+/// Thickness of each paint seen from above, m, by slot, for planes with layers: the total thickness, with the mixture
+/// of its upper layers. `None` for paint in one layer.
 #[must_use]
 pub fn seen_from_above(planes: &Planes) -> Option<Vec<(usize, Vec<f32>)>> {
     let layers = planes.own().iter().filter_map(|own| {
@@ -70,9 +69,9 @@ pub fn seen_from_above(planes: &Planes) -> Option<Vec<(usize, Vec<f32>)>> {
 struct Column {
     /// Quanta of each paint that are not in a layer above.
     lowest: Vec<f32>,
-    /// Quanta of each paint, layer after layer from the second on.
+    /// Quanta of each paint by layer, from the second on.
     above: Vec<f32>,
-    /// Quanta of each paint as they are seen, weighted.
+    /// Quanta of each paint, weighted by visibility.
     seen: Vec<f32>,
 }
 
@@ -141,7 +140,7 @@ mod tests {
     use super::*;
     use maulstick_canvas::own_plane::OwnPlane;
 
-    /// Two paints of which so many quanta lie on each cell, and of the second so many in the second layer.
+    /// Two paints with these quanta on each cell, `above` of the second one's in the second layer.
     fn planes(counts: [f32; 2], above: f32) -> Planes {
         let plane = |count| Arc::from(vec![count; TILE_CELLS]);
         let planes: Planes = [(2, plane(counts[0])), (7, plane(counts[1]))]

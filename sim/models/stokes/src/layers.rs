@@ -13,7 +13,7 @@ fn voxels_a_side(cell_m: f64) -> usize {
     ((SIDE_M / cell_m) as usize).max(1)
 }
 
-/// Share of a voxel that must be open for paint to lie in it; what is less belongs to the next.
+/// Least open share of a voxel that paint may occupy; a smaller one belongs to the voxel above.
 const LEAST_OPEN: f32 = 0.3;
 
 /// Layers of voxels on a surface.
@@ -28,7 +28,7 @@ pub struct Layers {
 }
 
 impl Layers {
-    /// Those of a window with cells of side `cell_m`.
+    /// Layers of a window with cells of side `cell_m`.
     #[must_use]
     pub fn of(window: &Window, cell_m: f64) -> Self {
         Self::new(window.ride_below(), cell_m)
@@ -42,20 +42,20 @@ impl Layers {
         }
     }
 
-    /// Those of a surface with this relief and cells of side `cell_m`.
+    /// Layers of a surface with this relief and cells of side `cell_m`.
     #[must_use]
     pub fn over(relief: &Relief, cell_m: f64) -> Self {
         let below = relief.depth_m() as f32 * relief.cells_per_m();
         Self::new(below, cell_m)
     }
 
-    /// Height of what catches paint above the lowest layer's floor, cells.
+    /// Height of the surface that catches paint above the lowest layer's floor, cells.
     #[must_use]
     pub fn floor(&self, window: &Window, cell: usize) -> f32 {
         (window.base()[cell] + self.below).max(0.0)
     }
 
-    /// The lowest layer of a column in which paint lies, by the height of what catches it over the lowest layer's floor.
+    /// The lowest layer of a column with room for paint, by the height of its floor over the lowest layer's.
     #[must_use]
     pub fn lowest(&self, floor: f32) -> usize {
         ((floor + LEAST_OPEN) as usize).min(LAYERS_MOST - 1)

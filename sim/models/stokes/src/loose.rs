@@ -1,15 +1,15 @@
-//! Paint that hangs on nothing falls: specks that the flow has thrown up, and lumps whose stalk a brush has cut.
+//! Unsupported paint falls: specks thrown up by the flow, and lumps whose stalk a brush has cut.
 
 use crate::voxels::Voxels;
 
-/// Fill from which on a voxel holds what is beside it and above it.
+/// Fill from which a voxel supports its neighbours beside and above.
 const HOLDS: f32 = 0.5;
-/// The same of the lowest voxel of a column, of which a part may be closed.
+/// Fill from which the lowest voxel of a column, part of which may be closed, supports its neighbours.
 const HOLDS_LOW: f32 = 0.3;
 
 impl Voxels {
-    /// Lets paint fall that is not joined, by voxels which are at least half full, to what lies on the ground. Paint at the
-    /// border of the area stays: what lies beyond may hold it.
+    /// Drops the paint that is not connected to the ground by voxels at least half full. Paint at the border of the
+    /// area stays, because paint beyond may support it.
     pub fn drop_loose(&mut self) {
         let mut totals = self.totals();
         let held = self.held(&totals);
@@ -24,9 +24,10 @@ impl Voxels {
                     continue;
                 }
                 while under < voxel && totals[voxel] > 0 {
-                    let room = match under == bottom {
-                        true => self.lowest_room(column),
-                        false => whole,
+                    let room = if under == bottom {
+                        self.lowest_room(column)
+                    } else {
+                        whole
                     };
                     let falls = totals[voxel].min(room.saturating_sub(totals[under]));
                     self.shift([voxel, under], falls);
@@ -40,7 +41,7 @@ impl Voxels {
         }
     }
 
-    /// Whether each voxel is joined to the ground, by what all of them hold.
+    /// True for each voxel that is connected to the ground, from all their quanta.
     fn held(&self, totals: &[u32]) -> Vec<bool> {
         let grid = self.volume.grid;
         let [width, height] = self.area.size;
@@ -70,7 +71,7 @@ impl Voxels {
                     if totals[beside] == 0 || std::mem::replace(&mut held[beside], true) {
                         continue;
                     }
-                    // Thin paint hangs on others, and holds none.
+                    // Thin paint hangs on others, and supports none.
                     if totals[beside] >= holds {
                         next.push(beside);
                     }

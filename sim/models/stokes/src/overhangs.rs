@@ -1,4 +1,4 @@
-//! Paint in layers as it is shown: its colour from above, its height that of its highest piece, over air or not.
+//! Display of paint in layers: its colour from above, its height that of its highest piece, over air or not.
 
 use maulstick_appearance::blank_surface::BlankSurface;
 use maulstick_appearance::show_paint::{
@@ -11,8 +11,9 @@ use maulstick_canvas::tile::{Tile, TileId};
 use crate::columns::{has_layers, tile_columns};
 use crate::layer_planes::seen_from_above;
 
-/// Thickness from which on a piece over air is shown above it, cells: a lip as thin as the cells are wide would be specks.
-const THICK: f32 = 2.0;
+/// Thickness from which a piece over air is displayed at its height, cells: a lip as thin as the cells are wide would
+/// appear as specks.
+const LIP_THICKNESS_CELLS: f32 = 2.0;
 
 /// Counted paint whose ridges may overhang.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +32,7 @@ impl ShowPaint for Overhangs {
             let relief = bare.relief.tile(id);
             for (cell, ends) in columns {
                 if let [.., bottom, top] = ends[..]
-                    && top - bottom >= THICK * cell_m as f32
+                    && top - bottom >= LIP_THICKNESS_CELLS * cell_m as f32
                 {
                     heights[cell] = top - relief[cell];
                 }

@@ -1,5 +1,5 @@
-//! Paint of a column without voids: paint that cannot be compressed fills what room there is under it, and none is fuller than
-//! full. What is under an overhang stays empty, if it is higher than a voxel: surface tension closes narrow gaps.
+//! Paint of a column without voids: paint is incompressible and fills the room under it, and no voxel is overfull. A
+//! gap under an overhang stays empty if it is higher than a voxel: surface tension closes narrow gaps.
 
 use crate::voxels::Voxels;
 
@@ -7,7 +7,8 @@ use crate::voxels::Voxels;
 const AIR: f32 = 0.5;
 
 impl Voxels {
-    /// Packs each column: as mixtures, what a voxel has too much of goes to the one above, and what it lacks comes from there.
+    /// Packs each column: as mixtures, the excess of a voxel moves to the one above, and its deficit is filled from
+    /// there.
     pub fn pack(&mut self) {
         let up = self.volume.grid.stride(2);
         let whole = self.layers.capacity;
@@ -38,14 +39,14 @@ impl Voxels {
         }
     }
 
-    /// Quanta that fill the lowest voxel of a column, with what is open below it.
+    /// Quanta that fill the lowest voxel of a column and the open part below it.
     #[must_use]
     pub fn lowest_room(&self, column: usize) -> u32 {
         let open = f32::from(self.lowest[column]) + 1.0 - self.floor_of(column);
         (open * self.layers.capacity as f32) as u32
     }
 
-    /// Moves so many quanta, which must be there, from one voxel to another, as the mixture that they are.
+    /// Moves `quanta`, which must be present, from one voxel to another with their mixture.
     pub(crate) fn shift(&mut self, [from, to]: [usize; 2], quanta: u32) {
         if quanta == 0 {
             return;
@@ -58,7 +59,7 @@ impl Voxels {
             paint[to] += goes;
             left -= goes;
         }
-        // What rounding has left of them.
+        // Remainder of the rounding.
         for paint in &mut self.volume.paints {
             let goes = left.min(paint[from]);
             paint[from] -= goes;
@@ -67,7 +68,7 @@ impl Voxels {
         }
     }
 
-    /// Puts paint of the lowest voxel of each column into what is open below it, where it lies as it flows.
+    /// Moves paint of the lowest voxel of each column into the open part below it, its place during the flow.
     pub fn sink(&mut self) {
         let up = self.volume.grid.stride(2);
         for column in 0..self.area.cells() {
@@ -80,7 +81,7 @@ impl Voxels {
         }
     }
 
-    /// Lifts what is below the lowest voxel of its column into that.
+    /// Moves paint below the lowest voxel of each column into that voxel.
     pub fn lift(&mut self) {
         let up = self.volume.grid.stride(2);
         for column in 0..self.area.cells() {

@@ -1,4 +1,4 @@
-//! Paint within a brush's reach: what lies deeper than its bristles come is left alone by the exchange of paint.
+//! Paint within a brush's reach: the exchange of paint leaves deeper paint alone.
 
 use maulstick_canvas::quantum::QUANTA_PER_UNIT;
 use maulstick_canvas::window::Window;
@@ -8,15 +8,15 @@ use maulstick_model::transfer::SWAP_FILM;
 
 use crate::voxels::Voxels;
 
-/// Quanta of each paint that each contact reaches, contact after contact.
+/// Quanta of each paint within each contact's reach, contact by contact.
 #[derive(Clone, Debug, Default)]
 pub struct Reach {
     quanta: Vec<u32>,
 }
 
 impl Reach {
-    /// Leaves on the cells of the contacts in the window only what they reach: down to where the bristles are, and at least
-    /// as deep as films change places.
+    /// Leaves on the contacts' cells of the window only the paint within reach: down to the bristles, and at least as
+    /// deep as films are swapped.
     pub fn uncover(&mut self, voxels: &Voxels, footprint: &mut Footprint, step: &mut Step<'_>) {
         let paints = voxels.slots.len();
         self.quanta.clear();
@@ -42,7 +42,7 @@ impl Reach {
         self.put(voxels, footprint, step.window);
     }
 
-    /// Leaves all paint on the cells of the contacts.
+    /// Leaves all paint on the contacts' cells.
     pub fn uncover_all(&mut self, voxels: &Voxels, footprint: &Footprint, step: &mut Step<'_>) {
         let paints = voxels.slots.len();
         self.quanta.clear();
@@ -68,8 +68,8 @@ impl Reach {
         }
     }
 
-    /// Takes over what the exchange has changed on the cells of the contacts: what went is gone from where they reach, what
-    /// came lies on top.
+    /// Applies the changes of the exchange on the contacts' cells: losses come from the reached paint, gains lie on
+    /// top.
     pub fn cover(&self, voxels: &mut Voxels, footprint: &Footprint, window: &Window) {
         let paints = voxels.slots.len();
         for paint in 0..paints {

@@ -19,12 +19,12 @@ use crate::layers::Layers;
 use crate::reach::Reach;
 use crate::voxels::Voxels;
 
-/// Cells around the contacts in which paint flows.
+/// Number of cells around the contacts in which paint flows.
 const AROUND: i64 = 5;
-/// Voxels of a film from which on it is dragged along; twice as thick it is whole.
+/// Thickness of a film from which it is dragged, voxels; from twice that all of it is.
 const FLOWS_FROM: f32 = 0.4;
 
-/// The paint model `stokes`, with room for its step.
+/// The paint model `stokes`, with the buffers of its step.
 #[derive(Debug, Default)]
 pub struct StokesPaint {
     footprint: Footprint,
@@ -69,8 +69,8 @@ impl PaintModel for StokesPaint {
         self.flow.backend()
     }
 
-    fn take_fall(&mut self) -> Option<String> {
-        self.flow.take_fall()
+    fn take_backend_change(&mut self) -> Option<String> {
+        self.flow.take_backend_change()
     }
 
     fn take_limit(&mut self) -> Option<Decision> {
@@ -83,7 +83,7 @@ impl PaintModel for StokesPaint {
 
     fn rest(&mut self, rest: &mut Rest<'_>) {
         let layers = Layers::of(rest.window, rest.cell_m);
-        // Paint flows in from beyond the area, too.
+        // Paint also flows in from beyond the area.
         let slots: Vec<usize> = rest.window.planes().map(|(slot, _)| slot).collect();
         let mut voxels = Voxels::read(rest.window, rest.area, layers, &slots);
         level(rest);
@@ -94,7 +94,7 @@ impl PaintModel for StokesPaint {
 }
 
 impl StokesPaint {
-    /// With the flow around brushes found by a device where that is faster, until it is lost.
+    /// A model whose flow around brushes is computed on a device where that is faster, until it is lost.
     #[must_use]
     pub fn on(device: Box<dyn FlowBackend>) -> Self {
         Self {
@@ -155,7 +155,7 @@ fn around(footprint: &Footprint, step: &Step<'_>, side: i64) -> Area {
     let origin = step.window.origin();
     let (least, most) = step.bounds;
     let low = [0, 1].map(|i| (from[i] as i64 + origin[i] - AROUND).max(least[i] - 1));
-    // Cells of the flow are the same wherever the brush is.
+    // Cells of the flow have fixed places, independent of the brush.
     let low = low.map(|low| low.div_euclid(side) * side);
     let high = [0, 1].map(|i| ((from[i] + size[i]) as i64 + origin[i] + AROUND).min(most[i] + 1));
     step.window.area(low, high)
@@ -168,7 +168,7 @@ fn slots_of(step: &Step<'_>, area: Area) -> Vec<usize> {
     (0..SLOTS).filter(has).collect()
 }
 
-/// Whether each paint is on an area, or layers of it that its counts no longer hold.
+/// True for each paint on an area, including layers that its counts no longer cover.
 fn slots_in(window: &Window, area: Area) -> [bool; SLOTS] {
     let mut lies = [false; SLOTS];
     for (slot, plane) in window.planes() {

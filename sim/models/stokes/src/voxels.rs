@@ -8,7 +8,7 @@ use maulstick_stokes::volume::Volume;
 use crate::layer_planes::{place_of, shape_of, value};
 use crate::layers::Layers;
 
-/// Layers of air over the highest paint.
+/// Number of layers of air over the highest paint.
 const AIR: usize = 3;
 
 /// The paint of an area.
@@ -16,7 +16,7 @@ const AIR: usize = 3;
 pub struct Voxels {
     /// The cells.
     pub area: Area,
-    /// The paints in use, in the order of [`slots`](Self::slots).
+    /// Paints in use, in the order of [`slots`](Self::slots).
     pub volume: Volume,
     /// Slot of each paint.
     pub slots: Vec<usize>,
@@ -26,14 +26,14 @@ pub struct Voxels {
     first: usize,
     /// The grid's lowest layer with room in each column.
     pub(crate) lowest: Vec<u16>,
-    /// The voxel of each column in that layer.
+    /// Voxel of each column in that layer.
     bottoms: Vec<usize>,
-    /// Height of what each column lies on, in cells of the grid.
+    /// Height of each column's base, cells of the grid.
     floors: Vec<f32>,
 }
 
 impl Voxels {
-    /// The paint of an area of a window on which this brush's `slots` may be laid.
+    /// The paint of an area of a window on which this brush's `slots` may be deposited.
     #[must_use]
     pub fn read(window: &Window, area: Area, layers: Layers, slots: &[usize]) -> Self {
         let cells: Vec<usize> = area.rows(window.width()).flatten().collect();
@@ -82,7 +82,7 @@ impl Voxels {
         voxels
     }
 
-    /// The column over a cell of a window of this width, which is in the area.
+    /// The column over a cell, which is in the area, of a window of this width.
     #[must_use]
     pub fn column_of(&self, cell: usize, width: usize) -> usize {
         let [x, y] = [
@@ -98,13 +98,13 @@ impl Voxels {
         self.layers.side
     }
 
-    /// Height of what a column lies on, in cells of the grid.
+    /// Height of a column's base, cells of the grid.
     #[must_use]
     pub fn floor_of(&self, column: usize) -> f32 {
         self.floors[column]
     }
 
-    /// Height of what the paint lies on at a corner between columns, in cells of the grid.
+    /// Height of the paint's base at a corner between columns, cells of the grid.
     #[must_use]
     pub fn floor_at(&self, [x, y]: [isize; 2]) -> f32 {
         let [width, height] = self.area.size.map(|cells| cells as isize);
@@ -115,7 +115,7 @@ impl Voxels {
         0.25 * ((floors[0] + floors[1]) + (floors[2] + floors[3]))
     }
 
-    /// What the paint lies on.
+    /// Base of the paint.
     #[must_use]
     pub fn solids(&self) -> Solids {
         let grid = self.volume.grid;
@@ -135,7 +135,7 @@ impl Voxels {
         solids
     }
 
-    /// Height of the surface of a column as high as its paint is, in cells of the grid.
+    /// Height of a column's surface by its amount of paint, cells of the grid.
     #[must_use]
     pub fn surface(&self, column: usize) -> f32 {
         let sum: u32 = self.column(column).map(|voxel| self.total(voxel)).sum();
@@ -149,14 +149,14 @@ impl Voxels {
         (0..layers).map(move |layer| bottom + layer * up)
     }
 
-    /// The same with what is open below, where [sunk](Self::sink) paint is.
+    /// Voxels of a column including the open part below, which holds [sunk](Self::sink) paint.
     pub(crate) fn open_column(&self, column: usize) -> impl Iterator<Item = usize> + use<> {
         let below = self.floors[column] < f32::from(self.lowest[column]);
         let sunk = below.then(|| self.bottom(column) - self.volume.grid.stride(2));
         sunk.into_iter().chain(self.column(column))
     }
 
-    /// Adds up what lies in a column down to so many quanta below its top, of each paint.
+    /// Adds up each paint in a column down to `depth` quanta below its top.
     pub fn reach(&self, column: usize, depth: f32, quanta: &mut [u32]) {
         let mut left = depth;
         for voxel in self.column(column).rev() {
@@ -180,7 +180,7 @@ impl Voxels {
         }
     }
 
-    /// Takes so many quanta of a paint, which must be there, from the top of a column.
+    /// Removes quanta of a paint, which must be present, from the top of a column.
     pub fn take(&mut self, column: usize, paint: usize, quanta: u32) {
         let mut left = quanta;
         for voxel in self.column(column).rev() {
@@ -224,15 +224,16 @@ impl Voxels {
         self.volume.paints.iter().map(|paint| paint[voxel]).sum()
     }
 
-    /// Lays paint on a column: what its highest voxel has no room for goes above it.
+    /// Deposits paint on a column: the excess of its highest voxel goes above it.
     pub fn lay(&mut self, column: usize, paint: usize, quanta: u32) {
         let (up, mut voxel) = (self.volume.grid.stride(2), self.top(column));
         let highest = self.column(column).next_back().unwrap_or(voxel);
         let mut left = quanta;
         while left > 0 {
-            let whole = match voxel == self.bottom(column) {
-                true => self.lowest_room(column),
-                false => self.layers.capacity,
+            let whole = if voxel == self.bottom(column) {
+                self.lowest_room(column)
+            } else {
+                self.layers.capacity
             };
             let room = whole.saturating_sub(self.total(voxel));
             let goes = if voxel >= highest {
@@ -246,7 +247,7 @@ impl Voxels {
         }
     }
 
-    /// Takes over what has changed in the counts of a window: from the top of its columns.
+    /// Applies the changes of a window's counts, from the top of its columns.
     pub fn follow(&mut self, window: &Window) {
         let cells: Vec<usize> = self.area.rows(window.width()).flatten().collect();
         for paint in 0..self.slots.len() {
@@ -266,8 +267,8 @@ impl Voxels {
         }
     }
 
-    /// Sets so many quanta of the lowest voxel of each column aside, of its mixture, and of a film thinner than `thin` voxels
-    /// more, up to all of one that is half as thick; what was set aside, paint after paint.
+    /// Sets aside `quanta` of the lowest voxel of each column, with its mixture, and more of a film thinner than `thin`
+    /// voxels, up to all of one half as thick. Returns the amounts set aside, paint by paint.
     #[must_use]
     pub fn set_aside(&mut self, quanta: f32, thin: f32) -> Vec<u32> {
         let thin = thin * self.layers.capacity as f32;
@@ -287,7 +288,7 @@ impl Voxels {
         aside
     }
 
-    /// Puts back what was set aside.
+    /// Returns the amounts set aside.
     pub fn put_back(&mut self, aside: &[u32]) {
         let columns = self.area.cells();
         for column in 0..columns {
@@ -356,7 +357,7 @@ impl Voxels {
     }
 }
 
-/// Columns of a window as they are read.
+/// Columns of a window while they are read.
 struct Columns<'a> {
     window: &'a Window,
     layers: Layers,
@@ -365,7 +366,7 @@ struct Columns<'a> {
     first: usize,
 }
 
-/// A plane of the model's own: which of the paints, in which layer of the grid.
+/// One of the model's own planes: index of the paint, layer of the grid, bytes.
 type Own<'a> = (usize, usize, &'a [u8]);
 
 impl Columns<'_> {
@@ -395,7 +396,6 @@ impl Columns<'_> {
         depth
     }
 
-    /// Fills the voxels.
     fn fill(&self, slots: &[usize], (own, bottoms): (&[Own<'_>], &[usize]), volume: &mut Volume) {
         let grid = volume.grid;
         let width = grid.cells[0].max(1);
@@ -404,7 +404,7 @@ impl Columns<'_> {
             let plane = self.window.plane(*slot);
             let lies = |cell: &usize| plane.map_or(0, |plane| plane[*cell] as u32);
             let mut left: Vec<u32> = self.cells.iter().map(lies).collect();
-            // From the lowest on: what counts no longer hold was taken from the top.
+            // From the lowest on: quanta that the counts lack were taken from the top.
             for (of, layer, bytes) in own {
                 if *of != paint || *layer >= grid.cells[2] {
                     continue;

@@ -1,4 +1,4 @@
-//! Columns of voxels from counts and planes of layers that need not fit them, and back.
+//! Columns of voxels from inconsistent counts and planes of layers, and back.
 
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_canvas::window::Area;
@@ -27,7 +27,7 @@ fn cells(window: &Window) -> Vec<usize> {
     AREA.rows(window.width()).flatten().collect()
 }
 
-/// Writes counts of two paints, and of each what is said to lie in a layer.
+/// Writes counts of two paints, and planes of layers.
 fn fill(window: &mut Window, counts: &[[u32; 2]], layers: &[(usize, usize, u32)]) {
     for (cell, counts) in cells(window).into_iter().zip(counts) {
         for (slot, count) in counts.iter().enumerate() {
@@ -47,7 +47,7 @@ fn counts(window: &Window) -> Vec<[f32; 2]> {
     cells(window).into_iter().map(of).collect()
 }
 
-/// Whether no voxel is fuller than full, and none that is paint has room for what lies above it.
+/// True if no voxel is overfull, and none that is paint has room for the paint above it.
 fn is_packed(voxels: &Voxels) -> bool {
     (0..AREA.cells()).all(|column| {
         let totals: Vec<u32> = voxels
@@ -74,7 +74,7 @@ proptest! {
         fill(&mut window, &all, &layers);
         let mut voxels = Voxels::read(&window, AREA, Layers::of(&window, CELL_M), &[0, 1]);
         prop_assert!(is_packed(&voxels));
-        // A void of a quantum, and a quantum too much.
+        // A void of a quantum, and an excess of a quantum.
         let bottom = voxels.bottom(column);
         let above = bottom + voxels.volume.grid.stride(2);
         prop_assume!(voxels.total(bottom) == voxels.lowest_room(column) && voxels.total(above) > 0);
@@ -98,7 +98,7 @@ proptest! {
         let voxels = Voxels::read(&window, AREA, Layers::of(&window, CELL_M), &[0, 1]);
         voxels.write(&mut window);
         prop_assert_eq!(counts(&window), before);
-        // And read again it is the same in each voxel.
+        // Read again, each voxel is the same.
         let again = Voxels::read(&window, AREA, Layers::of(&window, CELL_M), &[0, 1]);
         let same = |paint: usize| {
             let voxel = |voxels: &Voxels| -> Vec<u32> {

@@ -28,12 +28,12 @@ struct Easel {
     file: BrushFile,
     load: BrushLoad,
     handling: Handling,
-    /// How far each joint is bent, rad.
+    /// Bend of each joint, rad.
     bend: [f32; 2],
 }
 
 impl Easel {
-    /// A surface of so many cells each way: a level one under wet paint of a slot, quanta, or bare linen.
+    /// A surface of `cells` cells each way: a level one under wet paint of a slot, quanta, or bare linen.
     fn new(cells: u32, ground: Option<(usize, f32)>) -> Self {
         Self::with("round", cells, ground)
     }
@@ -73,7 +73,7 @@ impl Easel {
         self
     }
 
-    /// A stroke along x, from and to so many m, at this height of the handle by the brush's length.
+    /// A stroke along x, from and to in m, at this height of the handle by the brush's length.
     fn stroke(&mut self, [from, to]: [f64; 2], y_m: f64, height: f64) {
         self.stroke_between([[from, y_m], [to, y_m]], height);
     }
@@ -145,7 +145,7 @@ impl Easel {
         plane.iter().map(|count| f64::from(*count)).sum()
     }
 
-    /// Quanta in voxels that hang on none which lies on the surface, a level one: voxels hold together that are half full.
+    /// Quanta in voxels that are not connected, by half-full voxels, to the level surface.
     fn loose(&self) -> f64 {
         let (width, cells) = (
             self.window.width(),
@@ -169,7 +169,7 @@ impl Easel {
         held[0].fill(true);
         let mut next: Vec<[usize; 2]> = (0..cells).map(|cell| [0, cell]).collect();
         while let Some([layer, cell]) = next.pop() {
-            // Thin paint hangs on others, and holds none.
+            // Thin paint hangs on others, and supports none.
             if layer > 0 && voxels[layer][cell] < 0.5 * CELL {
                 continue;
             }
@@ -222,7 +222,7 @@ fn no_quantum_is_lost_in_the_tooth() {
     assert!(easel.laid() > 0.0);
 }
 
-/// Heights after a stroke of a brush that gives and takes nothing, by the ground's.
+/// Heights after a stroke of a brush that exchanges no paint, relative to the ground's.
 fn furrow(height: f64) -> Vec<f32> {
     let ground = 2.0 * CELL;
     let mut easel = Easel::new(192, Some((3, ground)));
@@ -242,7 +242,7 @@ fn a_brush_ploughs_a_furrow_between_ridges() {
         .fold(f32::MAX, |least, height| least.min(*height));
     let most = across.iter().fold(0.0f32, |most, height| most.max(*height));
     assert!(least < 0.7 && most > 1.3, "{least} {most}");
-    // A brush above the paint leaves it.
+    // A brush above the paint leaves it unchanged.
     assert!(furrow(1.5).iter().all(|height| *height == 1.0));
 }
 
@@ -264,8 +264,8 @@ fn thin_paint_is_not_pushed_beside_a_lump_that_is() {
     assert!(pushed(2.0 * thin).1 > 0);
 }
 
-/// How rough paint behind a stroke along y is in its direction, cells: by how much heights differ from those two cells before
-/// and behind them, in the mean; `ripple` is added to each fourth row.
+/// Roughness of paint behind a stroke along y in its direction, cells: the mean difference of heights from those two
+/// cells before and behind; `ripple` is added to each fourth row.
 fn roughness(window: &Window, ripple: f32) -> f32 {
     let width = window.width();
     let height = |cell: usize| {
@@ -300,7 +300,7 @@ fn a_stroke_is_smooth_along_itself() {
     }
 }
 
-/// Share of the brush's paint that a stroke lays into the lowest layer of a thick ground.
+/// Share of the brush's paint that a stroke deposits in the lowest layer of a thick ground.
 fn deep(height: f64) -> f64 {
     let mut easel = Easel::new(192, Some((3, 6.0 * CELL))).load(0);
     easel.stroke([0.010, 0.014], 0.016, height);

@@ -42,7 +42,7 @@ pub(crate) fn six_dof(at: [f64; 3]) -> StylusSample {
     }
 }
 
-/// Strokes along straight ways, each with a slight bow and a pressure that swells; `hand` makes the samples of them from
+/// Strokes along straight paths, each with a slight bow and a pressure that swells; `hand` makes their samples from
 /// place and pressure.
 pub(crate) fn along(
     ways: &[[[f64; 2]; 2]],

@@ -1,4 +1,4 @@
-//! An allocator that counts what each thread allocates, for tests of what allocates nothing.
+//! An allocator that counts the allocations of each thread, for tests that there are none.
 
 #![allow(
     unsafe_code,
@@ -12,7 +12,7 @@ thread_local! {
     static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
 }
 
-/// Counts what each thread allocates.
+/// Counts the allocations of each thread.
 struct Counting;
 
 fn count() {
@@ -42,7 +42,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
-/// How often this thread allocates while `work` is done.
+/// Number of this thread's allocations during `work`.
 pub(crate) fn allocations(work: impl FnOnce()) -> usize {
     let before = ALLOCATIONS.get();
     work();

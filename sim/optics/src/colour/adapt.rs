@@ -31,7 +31,7 @@ pub fn adaptation(from_white: [f64; 3], to_white: [f64; 3]) -> Matrix {
     scaled(&CAT16, from_white, to_white)
 }
 
-/// As [`adaptation`], by Bradford's matrix.
+/// [`adaptation`] by Bradford's matrix.
 #[must_use]
 pub fn bradford(from_white: [f64; 3], to_white: [f64; 3]) -> Matrix {
     scaled(&BRADFORD, from_white, to_white)

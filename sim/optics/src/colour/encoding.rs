@@ -1,8 +1,8 @@
-//! Meaning of a picture's numbers where no ICC profile gives it: a transfer function, and
-//! the chromaticities of primaries and white.
+//! Interpretation of a picture's numbers without an ICC profile: a transfer function, and the chromaticities of
+//! primaries and white.
 //!
-//! Codes and formulas are those of ITU-T H.273 (07/2024), tables 2 and 3, which PNG's chunk cICP gives;
-//! gAMA and cHRM of PNG, chromaticities of OpenEXR and TIFF are the same without codes.
+//! Codes and formulas are those of ITU-T H.273 (07/2024), tables 2 and 3, which PNG's chunk cICP gives; gAMA and cHRM
+//! of PNG, chromaticities of OpenEXR and TIFF are the same without codes.
 
 use maulstick_num::{exp, powf};
 
@@ -15,14 +15,14 @@ const DIFFUSE_WHITE: f64 = 203.0;
 /// The signal of that white in hybrid log-gamma (ibid.).
 const HLG_WHITE: f64 = 0.75;
 /// Chromaticities that differ by less than this are the same: files have them in hundred thousandths, or in f32.
-const SAME: f64 = 1e-5;
+const CHROMATICITY_TOLERANCE: f64 = 1e-5;
 /// Entries of a matrix beyond this one are of primaries that span hardly anything.
 const MOST_ENTRY: f64 = 100.0;
 
 /// From the numbers of a channel, 0 to 1, to light; 1 is white.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Transfer {
-    /// They are light.
+    /// Linear light.
     Linear,
     /// Light is a power of them.
     Power(f64),
@@ -43,7 +43,7 @@ pub enum Transfer {
 }
 
 impl Transfer {
-    /// That of a code of H.273, table 3; `None` for a reserved one.
+    /// The transfer function of a code of H.273, table 3; `None` for a reserved one.
     #[must_use]
     pub fn of_code(code: u8) -> Option<Self> {
         Some(match code {
@@ -126,13 +126,13 @@ pub struct Chromaticities {
 }
 
 impl Chromaticities {
-    /// Those of sRGB.
+    /// Chromaticities of sRGB.
     pub const SRGB: Self = Self {
         primaries: RgbSpace::Srgb.primaries(),
         white: D65,
     };
 
-    /// Those of a code of H.273, table 2; `None` for a reserved one.
+    /// Chromaticities of a code of H.273, table 2; `None` for a reserved one.
     #[must_use]
     pub fn of_code(code: u8) -> Option<Self> {
         const C: [f64; 2] = [0.310, 0.316];
@@ -179,7 +179,7 @@ impl Chromaticities {
     pub fn is_srgb(&self) -> bool {
         let all = |own: &Self| [own.primaries.as_flattened(), &own.white].concat();
         let mut pairs = all(self).into_iter().zip(all(&Self::SRGB));
-        pairs.all(|(one, other)| (one - other).abs() < SAME)
+        pairs.all(|(one, other)| (one - other).abs() < CHROMATICITY_TOLERANCE)
     }
 
     /// The matrix from linear light to that of sRGB, whose white is white (Bradford); the identity for

@@ -86,14 +86,14 @@ fn seventh(c: f64) -> f64 {
     (c7 / (c7 + 6_103_515_625.0)).sqrt()
 }
 
-/// The matrix W with which CIEDE2000 between `here` and a colour near it in Lab is the length of
-/// W·(difference): of lightness, of chroma, of hue.
+/// The matrix W with which CIEDE2000 between `here` and a nearby colour in Lab is the length of W·(difference): of
+/// lightness, of chroma, of hue.
 #[must_use]
 pub fn delta_e_2000_near(here: [f64; 3]) -> Matrix {
     let [l, a, b] = here;
     let stretch = 1.0 + 0.5 * (1.0 - seventh((a * a + b * b).sqrt()));
     let chroma = (a * stretch * a * stretch + b * b).sqrt();
-    // Around grey chroma and hue count alike, whatever the hue.
+    // Around grey chroma and hue are equivalent.
     let (cosine, sine) = if chroma > 0.0 {
         (a * stretch / chroma, b / chroma)
     } else {

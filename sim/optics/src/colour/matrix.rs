@@ -9,7 +9,7 @@ pub fn apply(matrix: &Matrix, colour: [f64; 3]) -> [f64; 3] {
     matrix.map(|row| row[0] * colour[0] + row[1] * colour[1] + row[2] * colour[2])
 }
 
-/// The matrix that does what `b` does and then what `a` does.
+/// The matrix that applies `b`, then `a`.
 #[must_use]
 pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
     let column = |j: usize| apply(a, [b[0][j], b[1][j], b[2][j]]);
@@ -17,13 +17,13 @@ pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]))
 }
 
-/// The solution x of m·x = v; entries that are not finite where there is none.
+/// The solution x of m·x = v; not finite without one.
 #[must_use]
 pub fn solve3(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
     apply(&inverse(m), v)
 }
 
-/// The inverse; entries that are not finite where there is none.
+/// The inverse; not finite without one.
 #[must_use]
 pub fn inverse(m: &Matrix) -> Matrix {
     let minor = |i: usize, j: usize| {

@@ -1,7 +1,7 @@
 //! XYZ, Lab, ΔE₀₀, and the colour spaces of displays and pictures.
 //!
-//! The working space is linear light with the primaries of sRGB, unclamped: a colour outside of sRGB
-//! has a negative channel there, and comes out of the matrix to a wider space without one.
+//! The working space is linear light with the primaries of sRGB, unclamped: a colour outside of sRGB has a negative
+//! channel there, and a positive one in a wider space.
 
 mod adapt;
 mod encoding;

@@ -50,15 +50,15 @@ impl RgbSpace {
     #[must_use]
     pub fn from_working(self) -> Matrix {
         match self {
-            // The product is the identity but for rounding.
+            // The product is the identity, except for rounding.
             Self::Srgb => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             Self::DisplayP3 => product(&inverse(&self.to_xyz()), &Self::Srgb.to_xyz()),
         }
     }
 }
 
-/// The matrix from XYZ under a light of white `white_xyz` (Y = 1) to linear sRGB, such that the
-/// perfect diffuser is (1, 1, 1): CAT16 adaptation to sRGB's white.
+/// The matrix from XYZ under a light of white `white_xyz` (Y = 1) to linear sRGB, such that the perfect diffuser is (1,
+/// 1, 1): CAT16 adaptation to sRGB's white.
 #[must_use]
 pub fn xyz_to_linear_srgb(white_xyz: [f64; 3]) -> Matrix {
     let adapt = adaptation(white_xyz, xyz_of_chromaticity(D65));

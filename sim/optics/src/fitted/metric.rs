@@ -1,4 +1,4 @@
-//! The metric of ΔE₀₀ in XYZ: what small errors look like at a colour.
+//! The metric of ΔE₀₀ in XYZ, for small errors at a colour.
 
 use crate::colour::{delta_e_2000, lab};
 

@@ -1,15 +1,15 @@
-//! A sampling rule fitted to paints and light: the few wavelengths, and their weights in XYZ, with
-//! which the films and mixtures of these paints look as with all 101 samples.
+//! A sampling rule fitted to paints and light: the few wavelengths, and their weights in XYZ, which reproduce the
+//! colours of all 101 samples for films and mixtures of these paints.
 //!
 //! Baxter's rule (2004, § 7.7) is made for any smooth reflectance. But the reflectances of a palette
 //! are few and known, so here wavelengths and weights minimise the squared colour difference
 //! Σ_m e_mᵀ·M_m·e_m over mixtures and films of the palette ([`training`]). e_m is the error in XYZ of
 //! the m-th one, and M_m the metric of ΔE₀₀ at its colour ([`metric`]).
 //!
-//! Wavelengths come by exchange, one at a time ([`select`]), weights by least squares under two
-//! conditions ([`weights`]): white is exact, and no weight is negative. Then XYZ of any reflectance
-//! from 0 to 1 lies from 0 to white, without clamping. That costs nothing: over 5,000 mixtures the
-//! mean ΔE₀₀ of sixteen samples is .07, with weights of either sign as well.
+//! Wavelengths are found by exchange, one at a time ([`select`]), weights by least squares under two conditions
+//! ([`weights`]): white is exact, and no weight is negative. Then XYZ of any reflectance from 0 to 1 lies from 0 to
+//! white, without clamping. That costs nothing: over 5,000 mixtures the mean ΔE₀₀ of sixteen samples is .07, the same
+//! as with weights of either sign.
 
 mod metric;
 mod normal;
@@ -34,7 +34,7 @@ const ROUNDS: usize = 3;
 /// A sample this many times as wrong as the mean counts √2 times as much in the next round.
 const OUTLIER_RATIO: f64 = 3.0;
 
-/// A reflectance of the palette: what it should look like, and how errors in it look.
+/// A reflectance of the palette: its exact colour, and the metric of errors there.
 struct Target {
     reflectance: [f64; SAMPLES],
     xyz: [f64; 3],
@@ -42,7 +42,7 @@ struct Target {
     weight: f64,
 }
 
-/// A fit that was done, by what it was done for.
+/// A cached fit, with its inputs.
 struct Done {
     n: usize,
     observer: Observer,
@@ -55,9 +55,8 @@ struct Done {
 const REMEMBERED: usize = 8;
 
 impl SamplingRule {
-    /// `n` wavelengths and weights fitted to `paints` under `light`: exact for white, weights of 0 or
-    /// more, the least ΔE₀₀ from all 101 samples over mixtures and films of the paints. Without
-    /// paints it is [`gauss`](Self::gauss).
+    /// `n` wavelengths and weights fitted to `paints` under `light`: exact for white, weights of 0 or more, the least
+    /// ΔE₀₀ from all 101 samples over mixtures and films of the paints. Without paints it is [`gauss`](Self::gauss).
     #[must_use]
     pub fn fitted(n: usize, observer: Observer, light: &Illuminant, paints: &[Paint]) -> Self {
         if paints.is_empty() {
@@ -67,7 +66,7 @@ impl SamplingRule {
     }
 }
 
-/// As [`fit`], from memory where the same was asked for before.
+/// [`fit`], cached by its inputs.
 fn fit_once(n: usize, observer: Observer, light: &Illuminant, paints: &[Paint]) -> SamplingRule {
     static MEMORY: Mutex<VecDeque<Done>> = Mutex::new(VecDeque::new());
     let mut memory = MEMORY.lock().unwrap_or_else(PoisonError::into_inner);
@@ -130,7 +129,7 @@ fn rule(chosen: &[usize], weights: &[[f64; 3]]) -> SamplingRule {
     }
 }
 
-/// Gives more weight to what is off by more than most.
+/// Increases the weight of targets with above-average errors.
 fn weigh(targets: &mut [Target], rule: &SamplingRule, chosen: &[usize]) {
     let errors: Vec<f64> = targets
         .iter()

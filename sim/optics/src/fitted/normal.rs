@@ -5,8 +5,8 @@ use crate::spectrum::SAMPLES;
 
 /// Unknowns: three weights a wavelength.
 const SIZE: usize = 3 * SAMPLES;
-/// Share of the mean diagonal that is added to it: reflectances are smooth, and so the equations of
-/// neighbouring wavelengths nearly the same.
+/// Share of the mean diagonal added to it: reflectances are smooth, and so the equations of neighbouring wavelengths
+/// nearly dependent.
 const RIDGE: f64 = 1e-9;
 /// Wavelengths of a block of products: its sums stay in registers.
 const BLOCK: usize = 4;

@@ -1,9 +1,8 @@
-//! Which wavelengths: exchange of one after the other for a better one.
+//! Selection of wavelengths, by exchange of one after the other for a better one.
 //!
-//! White enters as one more reflectance of great weight, so that what a wavelength adds follows from
-//! bordering a Cholesky factor: with A = L·Lᵀ of the others and z = L⁻¹·b, a wavelength with the
-//! columns B and the block D lowers the sum of squares by rᵀ·(D − YᵀY)⁻¹·r, Y = L⁻¹·B,
-//! r = b − Yᵀ·z.
+//! White enters as one more reflectance of great weight, so that the gain of a wavelength follows from bordering a
+//! Cholesky factor: with A = L·Lᵀ of the others and z = L⁻¹·b, a wavelength with the columns B and the block D lowers
+//! the sum of squares by rᵀ·(D − YᵀY)⁻¹·r, Y = L⁻¹·B, r = b − Yᵀ·z.
 
 use super::normal::Normal;
 use super::weights::Factor;
@@ -104,7 +103,7 @@ impl Border {
     /// By how much each wavelength lowers the sum of squares.
     fn gains(&self, normal: &Normal) -> Vec<f64> {
         let (rows, z) = (&self.factor.rows, &self.z);
-        // Of each wavelength D − YᵀY and r.
+        // D − YᵀY and r of each wavelength.
         let mut left = vec![([[0.0; 3]; 3], [0.0; 3]); SAMPLES];
         for (at, left) in left.chunks_mut(RUN).enumerate() {
             let from = 3 * RUN * at;

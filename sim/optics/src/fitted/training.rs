@@ -1,4 +1,4 @@
-//! The reflectances that a rule is fitted to: masstones, tints, films and mixtures of the paints.
+//! Reflectances for fitting a rule: masstones, tints, films and mixtures of the paints.
 
 use maulstick_num::ln;
 use rand_pcg::Pcg64;
@@ -9,7 +9,7 @@ use crate::paints::Paint;
 use crate::spectrum::SAMPLES;
 use crate::surface::SurfaceCorrection;
 
-/// Random mixtures.
+/// Number of random mixtures.
 const MIXTURES: usize = 1200;
 /// Seed of the mixtures.
 const SEED: u64 = 0x6d61_756c;

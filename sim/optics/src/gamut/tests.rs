@@ -239,7 +239,7 @@ proptest! {
         let clamped = clamp(space).map(rgb.map(|v| v as f32));
         prop_assert!(clamped.iter().all(|v| (0.0..=1.0).contains(v)), "{clamped:?}");
         let (from, to) = (oklab(rgb), oklab(shown(&soft(space), space, rgb)));
-        // Near grey rounding makes the hue; far outside of what eyes see there is none.
+        // Near grey rounding decides the hue; far outside of visible colours there is none.
         if chroma(to) > 0.02 && rgb.iter().all(|v| *v > -0.1) {
             prop_assert!(hue_error(from, to) < 0.5, "{from:?} {to:?}");
             prop_assert!(hue_error(from, [to[0], to[1] - 0.1 * to[2], to[2] + 0.1 * to[1]]) > 0.5);

@@ -1,4 +1,4 @@
-//! Where pictures come from: the colours of a foreign profile as those of sRGB.
+//! Input profiles: conversion of a foreign profile's colours to sRGB.
 
 use std::fmt;
 use std::sync::Arc;
@@ -50,8 +50,8 @@ impl Incoming {
         self.channels
     }
 
-    /// Encoded sRGB, 0 to 65535, of encoded pixels; as `moxcms` computes it, which may differ in the
-    /// last digit between processors. What sRGB cannot hold is clipped.
+    /// Encoded sRGB, 0 to 65535, of encoded pixels, by `moxcms`, which may differ in the last digit between processors.
+    /// Colours outside of sRGB are clipped.
     #[must_use]
     pub fn to_srgb(&self, encoded: &[u16]) -> Vec<u16> {
         if self.channels == 3 {

@@ -83,7 +83,7 @@ fn a_photographers_display_gets_its_own_numbers() {
         off([0, 255, 0, 128, 128, 128]) > Some(1),
         "a fault would pass"
     );
-    // The cube holds what pictures get.
+    // The cube agrees with the encoding of pictures.
     let cube = profile.cube(33).expect("foreign");
     assert_eq!(
         (cube.len(), cube[0], cube[33 * 33 * 33 - 1]),

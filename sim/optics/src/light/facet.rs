@@ -1,4 +1,4 @@
-//! Facets: normal of the surface at a cell, and its view from there: all that light needs of the relief.
+//! Facets: normal of the surface at a cell, and its view: all inputs of light from the relief.
 
 use super::shadow::Shadows;
 use super::sky::Sky;
@@ -7,7 +7,7 @@ use super::{HeightField, Lamp, normal};
 /// A piece of a relief as light meets it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facet {
-    /// s = ρ·∇h.
+    /// Slope s = ρ·∇h.
     pub slope: [f32; 2],
     /// Σ (xx, xy, yy), the covariance of slopes within the cell.
     pub spread: [f32; 3],
@@ -18,7 +18,7 @@ pub struct Facet {
 }
 
 impl Facet {
-    /// Of a flat surface.
+    /// Facet of a flat surface.
     pub const LEVEL: Self = Self {
         slope: [0.0; 2],
         spread: [0.0; 3],
@@ -30,7 +30,7 @@ impl Facet {
 /// Occlusion of lamp and sky over cells of one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surroundings {
-    /// The way to the lamp.
+    /// Path to the lamp.
     pub shadows: Shadows,
     /// The sky and its horizon.
     pub sky: Sky,

@@ -1,7 +1,7 @@
 //! Fresnel's equations for a dielectric.
 
-/// Share of unpolarised light that a surface reflects when it falls on it at the angle whose cosine is
-/// `cosine`, 0 to 1; `normal`, the share k₁ at normal incidence, says what it is made of:
+/// Share of unpolarised light that a surface reflects when it falls on it at the angle whose cosine is `cosine`, 0 to
+/// 1; `normal`, the share k₁ at normal incidence, represents its material:
 ///
 /// ```text
 /// n = (1 + √k₁)/(1 − √k₁),  c = cos θ,  t = √(1 − (1 − c²)/n²)

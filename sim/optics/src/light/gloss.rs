@@ -1,9 +1,8 @@
 //! The glossy reflection of a lamp in rough paint: a microfacet model in the space of slopes.
 //!
-//! Facets have the slope s of the relief in the mean and the covariance ½A about it. One of slope h̃ sends
-//! the light of the lamp to a viewer straight above; how many do is GGX's density of slopes (Walter et al.
-//! 2007, *Microfacet models for refraction through rough surfaces*; Heitz 2014, *Understanding the
-//! masking-shadowing function*):
+//! Facets have the mean slope s of the relief and the covariance ½A about it. One of slope h̃ reflects the lamp to a
+//! viewer straight above; their number is GGX's density of slopes (Walter et al. 2007, *Microfacet models for
+//! refraction through rough surfaces*; Heitz 2014, *Understanding the masking-shadowing function*):
 //!
 //! ```text
 //! P(s) = 1/(π·√|A|·(1 + (h̃ − s)ᵀ·A⁻¹·(h̃ − s))²)
@@ -11,17 +10,16 @@
 //! L/E  = F·P(s)·G/(4·b_z⁴·l_z),   G = 1/(1 + Λ),  Λ = (√(1 + α²·tan²θ_l) − 1)/2
 //! ```
 //!
-//! α is the paint's own roughness. Σ is the covariance of slopes that a cell does not resolve: added
-//! so, bristle marks that are narrower than a cell make a broad sheen, and no grain (Toksvig 2005,
-//! *Mipmapping normal maps*; Olano and Baker 2010, *LEAN mapping*). w²/8 is twice the variance of the
-//! slopes that mirror some part of the lamp's disc, of half-angle w (half of it in the half vector).
+//! α is the paint's own roughness. Σ is the covariance of slopes that a cell does not resolve: with it, bristle marks
+//! narrower than a cell give a broad sheen without grain (Toksvig 2005, *Mipmapping normal maps*; Olano and Baker 2010,
+//! *LEAN mapping*). w²/8 is twice the variance of the slopes that mirror some part of the lamp's disc, of half-angle w
+//! (half of it in the half vector).
 
 /// Roughness α of the glossiest film, and of the most matte ground.
 pub const ROUGHNESS: [f32; 2] = [0.1, 0.7];
 
-/// Gloss g of oil paint: `wetness` leads from .3, an eggshell of dry paint, to .75, stiff paint from
-/// the tube, whose pigment roughens the surface; the share of thinner in it leads either to 1, a level
-/// film. Both 0 to 1.
+/// Gloss g of oil paint: from .3 at `wetness` 0, an eggshell of dry paint, to .75 at 1, stiff paint from the tube,
+/// whose pigment roughens the surface; the share of thinner raises both to 1, a level film. Both arguments are 0 to 1.
 #[must_use]
 pub fn gloss(thinner_share: f32, wetness: f32) -> f32 {
     let own = 0.3 + (0.75 - 0.3) * wetness.clamp(0.0, 1.0);
@@ -72,7 +70,7 @@ pub fn unmasked(square: f32, graze: f32) -> f32 {
 mod tests {
     use super::*;
 
-    /// Sum over a square of slopes, `half` each way, of `f` of the offset.
+    /// Integral over a square of slopes, `half` each way, of `f` of the offset.
     fn over_slopes(half: f64, steps: usize, f: impl Fn([f32; 2]) -> f32) -> f64 {
         let step = 2.0 * half / steps as f64;
         let at = |i: usize| (-half + (i as f64 + 0.5) * step) as f32;
@@ -86,7 +84,7 @@ mod tests {
 
     #[test]
     fn every_facet_has_a_slope() {
-        // Of isotropic GGX a share 1/(1 + (r/α)²) is steeper than r.
+        // For isotropic GGX the share 1/(1 + (r/α)²) is steeper than r.
         for (own, spread) in [
             (0.02f32, [0.0; 3]),
             (0.05, [0.04, -0.03, 0.03]),
@@ -99,9 +97,9 @@ mod tests {
         }
     }
 
-    /// Light that facets which reflect everything send to all sides, of a lamp at the elevation of sine `lamp_z`,
-    /// those that reach other facets included: ∫ P·G·max(l·b, 0)/(l_z·b_z) d²s, which is 1 for the G
-    /// that belongs to P (Heitz 2014, eq. 88, the weak white furnace).
+    /// Light sent to all sides by facets that reflect everything, for a lamp at the elevation of sine `lamp_z`,
+    /// including those that reach other facets: ∫ P·G·max(l·b, 0)/(l_z·b_z) d²s, which is 1 for the G that belongs to P
+    /// (Heitz 2014, eq. 88, the weak white furnace).
     fn furnace(alpha: f32, lamp_z: f32, unmasked: impl Fn(f32, f32) -> f32) -> f64 {
         let across = (1.0 - lamp_z * lamp_z).sqrt();
         let square = alpha * alpha;
@@ -154,7 +152,7 @@ mod tests {
                 assert!((one / mean - 1.0).abs() < 0.5 * (sharp / mean - 1.0).abs());
             }
         }
-        // Without unresolved slopes gloss stays what it is; with many it is gone.
+        // Without unresolved slopes gloss is unchanged; with many it vanishes.
         for gloss in [0.0, 0.3, 0.75, 1.0] {
             let square = roughness(gloss) * roughness(gloss);
             assert!((merged_gloss(square, 0.0) - gloss).abs() < 1e-3);

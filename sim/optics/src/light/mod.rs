@@ -1,10 +1,9 @@
-//! Light on a relief: what a lamp makes of unlit colour, gloss and height.
+//! Light on a relief: shading of unlit colour, gloss and height under a lamp.
 //!
-//! One definition for the export and the view, whose shader holds the same terms
-//! (`ui/src/render/shaders/light_surface.wgsl`). With the surface z = ρ·h(x, y), ρ the strength of the
-//! relief, its slope s = ρ·∇h and normal n = (−s, 1)/|…|, the unit vector l toward the middle of the
-//! lamp, the unit vector m at a right angle to it and higher, the viewer straight above at v = (0, 0, 1),
-//! and the half vector b = (l + v)/|l + v|:
+//! One definition for the export and the view, whose shader has the same terms
+//! (`ui/src/render/shaders/light_surface.wgsl`). With the surface z = ρ·h(x, y), ρ the strength of the relief, its
+//! slope s = ρ·∇h and normal n = (−s, 1)/|…|, the unit vector l toward the middle of the lamp, the unit vector m at a
+//! right angle to it and higher, the viewer straight above at v = (0, 0, 1), and the half vector b = (l + v)/|l + v|:
 //!
 //! ```text
 //! incidence i = V·max(n·l + (1 − V)·w·n·m, 0)/l_z
@@ -14,14 +13,13 @@
 //! lit         = E·(d·unlit + w·(r + t))
 //! ```
 //!
-//! The lamp is as broad as a window: V is the share of it that the relief does not hide ([`shadow`]); of
-//! one that is half hidden the upper half is left, whence the term with m. A share a of the light comes
-//! from all around; v is how much of that a place receives, and B what it receives with the light that
-//! its surroundings, of its own colour c, throw back ([`sky`]): hollows of white paint are bright, those
-//! of red paint glow, and no shadow is black. Its gloss shows what it mirrors: a dim room, the dimmer the
-//! farther down it looks, and the lamp through microfacets ([`mod@gloss`]) whose slopes include those that a
-//! cell does not resolve. P₀ is what a level surface of the same roughness mirrors of the lamp. The
-//! highlights have the colour w of the light, white to an adapted eye (Baxter 2004, § 7.8.2).
+//! The lamp is as broad as a window: V is its share that the relief does not hide ([`shadow`]); a half-hidden lamp
+//! shows its upper half, hence the term with m. A share a of the light is ambient; v is the share of it that a place
+//! receives, and B includes the light reflected by its surroundings, of its own colour c ([`sky`]): hollows of white
+//! paint are bright, those of red paint glow, and no shadow is black. The gloss mirrors a room that is dimmer lower
+//! down, and the lamp through microfacets ([`mod@gloss`]) whose slopes include those that a cell does not resolve. P₀
+//! is the mirrored lamp in a level surface of the same roughness. The highlights have the colour w of the light, white
+//! to an adapted eye (Baxter 2004, § 7.8.2).
 //!
 //! The films' colour leaves the surface's own reflection k₁ out; here it is added, once, as that of
 //! Fresnel at normal incidence (Schlick 1994). All terms are relative to a flat open surface, where
@@ -42,11 +40,11 @@ pub use relief::HeightField;
 
 use crate::surface::SurfaceCorrection;
 
-/// Share a of the light that comes from all around, where nothing is hidden.
+/// Ambient share a of the light where nothing is hidden.
 pub const AMBIENT: f32 = 0.3125;
-/// e, by how much the room is dimmer at the level of the canvas than above it.
+/// Dimming e of the room at the level of the canvas relative to that above it.
 pub const DIMMING: f32 = 0.5;
-/// k₁, the share of the light that a surface reflects by itself.
+/// Share k₁ of the light that a surface itself reflects.
 pub const SURFACE: f32 = SurfaceCorrection::STANDARD.k1 as f32;
 /// The lowest lamp, as the z of its direction: below it a flat surface would hardly be lit, and
 /// everything relative to it would have no bound.
@@ -70,14 +68,13 @@ pub struct LampSetup {
     pub exposure: f64,
     /// Factor ρ on the heights of the relief, 0 or more.
     pub relief: f64,
-    /// Tangent of half the angle under which the lamp is seen: how soft shadows are, 0 or more.
+    /// Tangent of half the angle of the lamp, the softness of shadows, 0 or more.
     pub softness: f64,
     /// w, the light's own colour, linear.
     pub colour: [f64; 3],
 }
 
 impl Default for LampSetup {
-    /// Straight above.
     fn default() -> Self {
         Self {
             toward: [0.0, 0.0, 1.0],
@@ -107,7 +104,7 @@ pub struct Lamp {
     pub peak: f32,
     /// tan²θ_l.
     pub graze: f32,
-    /// w, the tangent of half the angle under which it is seen.
+    /// Tangent w of half the angle of the lamp.
     pub softness: f32,
     /// w, its colour.
     pub colour: [f32; 3],
@@ -134,7 +131,7 @@ impl Lamp {
         let intensity = or(setup.intensity, default.intensity);
         let across = (l[0] * l[0] + l[1] * l[1]).sqrt();
         let softness = or(setup.softness, default.softness).min(SET * l[2] / across.max(1e-6));
-        // Straight above, any way is as good.
+        // Straight above, any direction will do.
         let away = if across > 1e-6 {
             [-l[0] / across, -l[1] / across]
         } else {
@@ -229,8 +226,8 @@ pub fn lit(spot: &Spot, lamp: &Lamp) -> [f32; 3] {
     })
 }
 
-/// The exposure with which a painting begins: the largest, of at most 1, under which no channel of the
-/// bare ground is brighter than [`BARE`] in light of this intensity. 1 where that is no number.
+/// The initial exposure of a painting: the largest, of at most 1, under which no channel of the bare ground is brighter
+/// than [`BARE`] in light of this intensity. 1 where that is NaN.
 #[must_use]
 pub fn starting_exposure(ground_rgb: [f64; 3], intensity: f64) -> f64 {
     let brightest = ground_rgb.into_iter().fold(0.0, f64::max) * intensity;

@@ -35,9 +35,9 @@ impl<'a> HeightField<'a> {
         ]
     }
 
-    /// Covariance Σ (xx, xy, yy) of the slopes about [`slope`](Self::slope) in what a pixel takes in of
-    /// the cell and its neighbours: to first order slopes change by H·d at the offset d, H being the
-    /// Hessian of the heights, and for offsets with a variance of half a cell² Σ = H·Hᵀ/2.
+    /// Covariance Σ (xx, xy, yy) of the slopes about [`slope`](Self::slope) within a pixel's part of the cell and its
+    /// neighbours: to first order slopes change by H·d at the offset d, H being the Hessian of the heights, and for
+    /// offsets with a variance of half a cell² Σ = H·Hᵀ/2.
     #[must_use]
     pub fn spread(&self, x: usize, y: usize) -> [f32; 3] {
         let [below, row, above] = [-1, 0, 1].map(|dy| self.row(y as i64 + dy));

@@ -1,4 +1,4 @@
-//! Soft shadows of a relief: how much of the lamp a cell sees over the cells toward it.
+//! Soft shadows of a relief: the visible share of the lamp over the cells toward it.
 //!
 //! From a cell at height h₀, a point of the relief h at the distance s toward the lamp stands, in the
 //! plane of both, at an angle α above the middle of the lamp; with l = (c, l_z) there,
@@ -8,33 +8,31 @@
 //! V     = u²·(3 − 2u),  u = ½ − ½·clamp(max tan α/w, −1, 1)
 //! ```
 //!
-//! w, the softness, is the tangent of half the angle under which the lamp is seen; u is the height of
-//! what is left of its disc over the horizon, and V the share of the area that this cuts off, to .01.
-//! So a shadow is sharp at the foot of what casts it and soft far from it. A lamp never reaches below the
-//! horizon of a flat surface, which sees all of it: V is exactly 1.
+//! w, the softness, is the tangent of half the angle under which the lamp is seen; u is the visible height of its disc
+//! over the horizon, and V the visible share of its area, to .01. So a shadow is sharp at the foot of its object and
+//! soft far from it. A lamp never reaches below the horizon of a flat surface, where V is exactly 1.
 //!
-//! The way to the lamp is followed over the lines of the grid that it crosses, to [`REACH_M`] or
-//! [`REACH`] cells, and heights are interpolated between the two cells of each. Where that is more lines
-//! than [`TAPS`], the last strides are of two lines and take the mean of both: to leave lines out would
-//! miss ridges of one cell at every other distance, which shows as stripes. Over the last of the way the
-//! lamp is taken to be higher by degrees, so that a shadow too long for the reach fades out.
+//! The path to the lamp is sampled at the lines of the grid that it crosses, to [`REACH_M`] or [`REACH`] cells, and
+//! heights are interpolated between the two cells of each. Beyond [`TAPS`] lines, the last strides span two lines and
+//! use the mean of both: leaving lines out would miss ridges of one cell at every other distance, which shows as
+//! stripes. Toward the end of the path the lamp is gradually raised, so that a shadow too long for the reach fades out.
 
 use super::{HeightField, Lamp};
 
-/// Places that are looked at on the way to the lamp.
+/// Number of samples toward the lamp.
 pub const TAPS: usize = 16;
 /// The farthest, m: four times the height of the thickest impasto.
 pub const REACH_M: f64 = 4e-3;
-/// The farthest, in cells along the axis that the way is nearest to.
+/// Greatest distance, cells along the axis nearest to the path.
 pub const REACH: u32 = 24;
-/// Share of the way that fades.
+/// Share of the path over which shadows fade.
 const FADING: f64 = 0.375;
-/// The sharpest lamp.
+/// Least softness of a lamp.
 const LEAST_SOFTNESS: f64 = 1e-3;
-/// Least denominator of tan α: what stands at a right angle to the lamp or lower hides nothing.
+/// Least denominator of tan α: an obstacle at a right angle to the lamp or lower hides nothing.
 pub const LEAST_DENOMINATOR: f32 = 1e-6;
 
-/// A place on the way to the lamp, relative to a cell.
+/// A place on the path to the lamp, relative to a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tap {
     /// The two cells that it lies between: columns and rows.
@@ -48,7 +46,7 @@ pub struct Tap {
 /// Direction and length of a lamp's shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shadows {
-    /// The way to it, from the nearest place.
+    /// Samples of the path, from the nearest place.
     pub taps: [Tap; TAPS],
     /// c and l_z.
     pub toward: [f32; 2],
@@ -64,7 +62,7 @@ impl Shadows {
     pub fn new(lamp: &Lamp, cell_m: f32) -> Self {
         let [x, y, z] = lamp.toward.map(f64::from);
         let across = (x * x + y * y).sqrt();
-        // Above the middle any way is as good.
+        // Above the middle any direction will do.
         let [x, y] = if across > 1e-6 {
             [x / across, y / across]
         } else {
@@ -75,7 +73,7 @@ impl Shadows {
         let lines = lines.clamp(TAPS as f64, f64::from(REACH)) as usize;
         let single = 2 * TAPS - lines;
         let tap = |k: usize| {
-            // Lines that are crossed, and what is between: the mean of two lines, or of two cells of one.
+            // Lines and strides of two lines: a stride is the mean of two lines, or of two cells of one.
             let double = k >= single;
             let first = if double { single + 2 * (k - single) } else { k } + 1;
             let far = first as f64 + if double { 0.5 } else { 0.0 };
@@ -213,7 +211,7 @@ mod tests {
         let edge = |z: f64| {
             let row = seen(&wall, &lamp([-1.0, 0.0, z], 0.05));
             assert!(row[..10].iter().all(|v| *v == 1.0), "the lamp's side");
-            // Where half of the lamp is seen, between two cells.
+            // The half-visible lamp, between two cells.
             let dark = (13..SIDE).find(|x| row[*x] > 0.5).expect("an end");
             dark as f32 - (row[dark] - 0.5) / (row[dark] - row[dark - 1])
         };

@@ -1,5 +1,5 @@
-//! Ambient occlusion of a relief: how much of the light from all around a cell receives, and what its
-//! surroundings throw back instead.
+//! Ambient occlusion of a relief: the share of ambient light that a cell receives, and the light reflected by its
+//! surroundings instead.
 //!
 //! Light of the same radiance comes from everywhere above the plane of the surface. In the direction φ
 //! the relief hides it up to the horizon's elevation η; a facet of normal n, with n_φ its component along
@@ -11,11 +11,11 @@
 //!   = 2/N·Σ_φ n_φ·(π/4 − η/2 − sin η·cos η/2) + n_z·cos²η/2
 //! ```
 //!
-//! η is the highest of [`RINGS`] places in each of N directions, from the next cell to [`REACH_M`] in
-//! geometric steps; far ones count for less, so that the occlusion ends by degrees (ibid.). What hides the
-//! sky is paint of the same colour as a rule, and lit: of a share v of light from all around, a concavity
-//! of albedo ρ receives with all reflections between its walls [`bounced`] (Jimenez, Wu, Pesce and Jarabo
-//! 2016, *Practical real-time strategies for accurate indirect occlusion*, eq. 10).
+//! η is the highest of [`RINGS`] places in each of N directions, from the next cell to [`REACH_M`] in geometric steps;
+//! far ones count for less, so that the occlusion ends by degrees (ibid.). The sky is usually hidden by lit paint of
+//! the same colour: at a share v of ambient light, a concavity of albedo ρ receives, with all reflections between its
+//! walls, [`bounced`] (Jimenez, Wu, Pesce and Jarabo 2016, *Practical real-time strategies for accurate indirect
+//! occlusion*, eq. 10).
 
 use super::HeightField;
 
@@ -23,11 +23,11 @@ use super::HeightField;
 pub const DIRECTIONS: usize = 8;
 /// Places in each of them.
 pub const RINGS: usize = 5;
-/// All of them.
+/// Number of all samples.
 pub const TAPS: usize = DIRECTIONS * RINGS;
 /// Reach of occlusion, m: twice the height of thick impasto.
 pub const REACH_M: f64 = 2e-3;
-/// The same in cells, at most.
+/// Greatest reach, cells.
 pub const REACH: u32 = 16;
 /// Share of its elevation by which the farthest place counts.
 const FARTHEST_SHARE: f64 = 0.3;
@@ -159,8 +159,8 @@ pub fn above(tangent: f32, along: f32, up: f32) -> f32 {
     0.5 * (along * (from_zenith - sine * cosine) + up * square)
 }
 
-/// Light on a place that sees the share `open` of it, with what its surroundings of this
-/// albedo throw back, 0 to 1 each:
+/// Light on a place that sees the share `open` of the sky, with the reflections of its surroundings of this albedo, 0
+/// to 1 each:
 ///
 /// ```text
 /// max(v, ((v·a + b)·v + c)·v),  a = 2.0404ρ − .3324,  b = −4.7951ρ + .6417,  c = 2.7552ρ + .6903

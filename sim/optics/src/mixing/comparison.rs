@@ -4,11 +4,11 @@ use crate::colour::delta_e_2000;
 use crate::mixture::{Blend, Coat};
 use crate::viewing::{Seen, Viewing};
 
-/// Wavelengths that stand for red, green and blue where K-M is computed at three, nm: those whose
-/// colour is nearest to sRGB's primaries (dominant wavelengths, IEC 61966-2-1).
+/// Wavelengths for red, green and blue where K-M is computed at three, nm: those whose colour is nearest to sRGB's
+/// primaries (dominant wavelengths, IEC 61966-2-1).
 pub const THREE_NM: [f64; 3] = [612.0, 549.0, 465.0];
 
-/// Way of mixing paints.
+/// Method of mixing paints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     /// K-M at all 101 samples.
@@ -21,7 +21,7 @@ pub enum Way {
     LinearRgb,
 }
 
-/// A graded mixture by one way.
+/// A graded mixture by one method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grading {
     /// The way.

@@ -1,8 +1,7 @@
-//! Which mixtures of two and three paints come nearest to a colour, in ΔE₀₀.
+//! Mixtures of two and three paints nearest to a colour, in ΔE₀₀.
 //!
-//! Shares are searched by the logarithm of their ratio: of a phthalo a hundredth does what of an
-//! ochre the half does. What is proposed can be measured out: shares have as few digits as the
-//! colour allows.
+//! Shares are searched by the logarithm of their ratio: a hundredth of a phthalo equals half of an ochre. Proposals can
+//! be measured out: shares have as few digits as the colour allows.
 
 use maulstick_num::exp;
 use maulstick_types::Mixture;
@@ -22,7 +21,7 @@ const MOST_IN_TRIPLES: usize = 40;
 const LARGEST_LN_RATIO: f64 = 7.0;
 /// Places on which a pair is tried first; between them a colour turns but once.
 const PAIR_GRID: i32 = 28;
-/// Places each way on which three paints are tried first.
+/// Number of places each way at which three paints are tried first.
 const TRIPLE_GRID: i32 = 8;
 /// Largest cost of rounding the shares, ΔE₀₀: a quarter of the least difference that an eye sees.
 const ROUNDING: f64 = 0.25;
@@ -34,7 +33,7 @@ const DIGITS: u32 = 4;
 pub struct Proposal {
     /// The paints, the largest share first.
     pub mixture: Mixture,
-    /// Its distance from what was asked for, ΔE₀₀.
+    /// Distance from the target, ΔE₀₀.
     pub delta_e: f64,
     /// Its colour.
     pub seen: Seen,
@@ -43,9 +42,9 @@ pub struct Proposal {
 /// The nearest mixtures, the nearest first.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Proposals {
-    /// Of two paints.
+    /// Proposals of two paints.
     pub pairs: Vec<Proposal>,
-    /// Of three paints, each nearer than any two of them.
+    /// Proposals of three paints, each nearer than any two of them.
     pub triples: Vec<Proposal>,
 }
 
@@ -153,8 +152,8 @@ impl<'a> Table<'a> {
         found
     }
 
-    /// Paints that triples are sought among, in their order: all of a common palette; of a large one
-    /// those of the nearest pairs, since the search grows with the cube of their number.
+    /// Paints for triples, in their order: all of a common palette; for a large one those of the nearest pairs, since
+    /// the search grows with the cube of their number.
     fn promising(&self, pairs: &[Found<2>]) -> Vec<usize> {
         if self.paints.len() <= MOST_IN_TRIPLES {
             return (0..self.paints.len()).collect();
@@ -187,7 +186,7 @@ impl<'a> Table<'a> {
         (shares(place), delta_e)
     }
 
-    /// The nearest, rounded.
+    /// The nearest mixtures, rounded.
     fn nearest<const N: usize>(&self, mut found: Vec<Found<N>>, count: usize) -> Vec<Proposal> {
         found.sort_by(|a, b| a.2.total_cmp(&b.2));
         // Rounding changes the order of neighbours.

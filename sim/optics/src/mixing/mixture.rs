@@ -55,8 +55,8 @@ impl Coat {
         }
     }
 
-    /// Reflectance of paint of absorption `k` and scattering `s`, per metre. With a surface it is
-    /// what a spectrometer reads that includes the gloss.
+    /// Reflectance of paint of absorption `k` and scattering `s`, per metre. With a surface it is that of a
+    /// spectrometer with the gloss included.
     #[must_use]
     pub fn reflectance(&self, k: f64, s: f64) -> f64 {
         let inside = match self.layer {

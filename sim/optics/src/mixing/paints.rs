@@ -25,11 +25,10 @@ pub struct Paint {
     pub s: Spectrum,
 }
 
-/// Name of the thinner, which every palette has: a medium that absorbs and scatters nothing.
+/// Name of the thinner, which every palette has: a medium without absorption and scattering.
 pub const THINNER: &str = "Thinner";
 
 impl Paint {
-    /// The thinner.
     fn thinner() -> Self {
         Self {
             name: THINNER.to_owned(),
@@ -125,7 +124,7 @@ fn meant(nearest: Option<&str>) -> String {
 }
 
 /// Largest K or S relative to titanium white's S: a black of which 0.02 µm hide.
-const MOST: f64 = 1e6;
+const COEFFICIENT_MAX: f64 = 1e6;
 /// The name of a paint has at most this many bytes.
 const NAME_MAX: usize = maulstick_types::limits::PAINT_NAME_MAX;
 
@@ -337,11 +336,9 @@ impl PaintLibrary {
         })
     }
 
-    /// Checks that a mixture's shares are right and its paints exist, and spells their names as the
-    /// file does.
+    /// Checks that a mixture's shares are valid and its paints exist, and spells their names like the file.
     ///
-    /// # Errors
-    /// [`PaintError::Mixture`] or [`PaintError::Unknown`].
+    /// # Errors [`PaintError::Mixture`] or [`PaintError::Unknown`].
     pub fn check(&self, mixture: &Mixture) -> Result<Mixture, PaintError> {
         mixture.check()?;
         let mut mixture = mixture.clone();

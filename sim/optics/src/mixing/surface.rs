@@ -1,7 +1,7 @@
 //! Surface correction: reflection of light that enters and leaves a film (Saunderson 1942).
 //!
-//! Kubelka-Munk films compose internal reflectances; the surface is applied once, at the outermost
-//! film. Its own reflection k₁ belongs to the gloss, which adds it when the picture is lit.
+//! Kubelka-Munk films compose internal reflectances; the surface is applied once, at the outermost film. The surface's
+//! reflection k₁ belongs to the gloss, which adds it when the picture is lit.
 
 /// The surface's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]

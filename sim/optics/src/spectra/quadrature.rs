@@ -5,9 +5,9 @@
 /// Nodes in rising order and positive weights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaussRule {
-    /// Where to evaluate.
+    /// Points of evaluation.
     pub nodes: Vec<f64>,
-    /// With what weight.
+    /// Weights of the points.
     pub weights: Vec<f64>,
 }
 

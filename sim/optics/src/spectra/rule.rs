@@ -1,4 +1,4 @@
-//! Which wavelengths a painting computes, and how their reflectances become XYZ.
+//! Wavelengths of a painting, and conversion of their reflectances to XYZ.
 
 use crate::cie::{Illuminant, Observer};
 use crate::quadrature::Recurrence;

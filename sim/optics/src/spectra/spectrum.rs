@@ -46,9 +46,8 @@ pub(crate) fn interpolate(table: &[f64], x: f64) -> f64 {
     table[i] * (1.0 - t) + table[(i + 1).min(last)] * t
 }
 
-/// The spectrum through points (nm, value) of rising nm: monotone cubic between them (Fritsch and
-/// Butland 1984), which makes no peaks that were not measured; beyond the ends the end's value holds.
-/// Without points it is 0.
+/// The spectrum through points (nm, value) of ascending nm: monotone cubic between them (Fritsch and Butland 1984),
+/// which adds no peaks; constant beyond the ends. Without points it is 0.
 #[must_use]
 pub fn resample(points: &[[f64; 2]]) -> Spectrum {
     let slopes = monotone_slopes(points);

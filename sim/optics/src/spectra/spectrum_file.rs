@@ -15,7 +15,7 @@ use crate::surface::SurfaceCorrection;
 
 /// Instruments read nothing as a little less than nothing, by this share of the greatest reading at most.
 const DARK: f64 = 0.01;
-/// They read a white that is as white as their standard as more than 1, by this at most.
+/// Greatest excess of a white over the instrument's standard.
 const MOST_ABOVE_WHITE: f64 = 0.05;
 
 impl Spectrum {
@@ -47,12 +47,10 @@ pub struct Reflectance {
 }
 
 impl Reflectance {
-    /// Reads a column of reflectances of 0 to 1 over wavelengths in nm, which must rise; see
-    /// [`resample`]. As in tables of measurements, `# specular: excluded` says that the gloss was left
-    /// out; else it counts as read.
+    /// Reads a column of reflectances of 0 to 1 over ascending wavelengths in nm; see [`resample`]. As in tables of
+    /// measurements, `# specular: excluded` means without the gloss; otherwise it is included.
     ///
-    /// # Errors
-    /// [`TableError`] with line and column.
+    /// # Errors [`TableError`] with line and column.
     pub fn parse(text: &str) -> Result<Self, TableError> {
         let table = parsed(text)?;
         let mut specular_excluded = false;
@@ -83,7 +81,7 @@ impl Reflectance {
         })
     }
 
-    /// Internal reflectance: without what the surface does (Saunderson 1942), 0 to 1.
+    /// Internal reflectance, without the effect of the surface (Saunderson 1942), 0 to 1.
     #[must_use]
     pub fn internal(&self, surface: &SurfaceCorrection) -> Spectrum {
         let gloss = if self.specular_excluded {

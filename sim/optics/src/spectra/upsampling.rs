@@ -1,21 +1,20 @@
 //! Reflectances that have a given colour (Jakob and Hanika 2019, "A Low-Dimensional Function Space for
 //! Efficient Spectral Upsampling").
 //!
-//! Light that leaves a printed surface is modelled as (1 − k₁)·S(c₀·u² + c₁·u + c₂), S the sigmoid
-//! ½ + x/(2√(1 + x²)), u the wavelength from −1 at 380 nm to 1 at 780 nm. With the surface's own
-//! reflection k₁ that is what the eye sees, and XYZ is linear in S; the internal reflectance under the
-//! surface is S/((1 − k₂) + k₂·S). The three coefficients are found by damped Gauss-Newton steps in
-//! CIELAB.
+//! Light that leaves a printed surface is modelled as (1 − k₁)·S(c₀·u² + c₁·u + c₂), S the sigmoid ½ + x/(2√(1 + x²)),
+//! u the wavelength from −1 at 380 nm to 1 at 780 nm. With the surface's own reflection k₁ that is the visible colour,
+//! and XYZ is linear in S; the internal reflectance under the surface is S/((1 − k₂) + k₂·S). The three coefficients
+//! are found by damped Gauss-Newton steps in CIELAB.
 
 use crate::colour::{Matrix, apply, inverse, solve3};
 use crate::studio::Studio;
 use crate::surface::SurfaceCorrection;
 
-/// Steps at most; a colour inside of the gamut takes about eight.
+/// Greatest number of steps; a colour inside of the gamut takes about eight.
 const STEPS: usize = 60;
 /// A colour as near as this is reached, ΔE*ab.
 const NEAR_DELTA_E: f64 = 0.01;
-/// Bound on a coefficient: there the sigmoid is 1 but for a millionth.
+/// Bound of a coefficient, where the sigmoid is within a millionth of 1.
 const LARGEST_COEFFICIENT: f64 = 500.0;
 /// Damping with which the steps begin, and with which they are given up.
 const DAMPING: [f64; 2] = [1e-3, 1e9];
@@ -76,8 +75,7 @@ impl Upsampler {
         std::array::from_fn(|i| rgb[i].max(self.surface.k1 * self.white_rgb[i]))
     }
 
-    /// The smooth reflectance that is seen as the linear sRGB colour `rgb`, gloss included, or the
-    /// nearest to it.
+    /// The smooth reflectance with the linear sRGB colour `rgb`, gloss included, or the nearest to it.
     #[must_use]
     pub fn fit(&self, rgb: [f64; 3]) -> Smooth {
         let gloss = self.white.map(|v| self.surface.k1 * v);
@@ -206,7 +204,7 @@ mod tests {
         Studio::new(&settings, library.paints())
     }
 
-    /// ΔE₀₀ between the ground that is made for sRGB bytes, as it is seen, and those bytes.
+    /// ΔE₀₀ between sRGB bytes and the displayed ground made for them.
     fn reached(studio: &Studio, made: &Upsampler, bytes: [u8; 3], fault: f32) -> f64 {
         let rgb = bytes.map(|byte| srgb_decode(f64::from(byte) / 255.0));
         let mut ground = made.even(made.fit(rgb));

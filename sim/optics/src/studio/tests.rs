@@ -104,8 +104,8 @@ fn layers() -> Vec<[Vec<f32>; 2]> {
     ]
 }
 
-/// Farthest that baked layers under a last wet film are from films composed one over the other in
-/// f64 (Baxter 2004, eq. 7.11), linear sRGB. `fault` scales the opacity that the planes are told.
+/// Greatest distance of baked layers under a last wet film from films composed in f64 (Baxter 2004, eq. 7.11), linear
+/// sRGB. `fault` scales the opacity given to the planes.
 fn off_from_composed(fault: f32) -> f64 {
     let studio = studio(&["Ultramarine Blue", "Titanium White"]);
     let opacity = [1.0f32, 0.5, 1.0, 1.0];

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use maulstick_convert::{Distance, FAR};
+use maulstick_convert::{Distance, OBVIOUS_DELTA_E};
 use maulstick_types::Mixture;
 use maulstick_types::command::Detail;
 use maulstick_types::paint::StepName;
@@ -15,7 +15,7 @@ pub enum Applied {
     Done,
     /// Paint has dried into this layer.
     Dried(Layer),
-    /// Paint dries within so many seconds.
+    /// Paint dries within a number of seconds.
     Drying(f64),
     /// Dry layers are wet again.
     Rewet {
@@ -32,7 +32,7 @@ pub enum Applied {
     Written(String),
     /// A surface has another paint model.
     Converted {
-        /// How near its colours come to those of before.
+        /// Distance of its colours from the old ones.
         distance: Distance,
         /// Side of its cells, m.
         cell_m: f64,
@@ -69,7 +69,7 @@ impl fmt::Display for Applied {
     }
 }
 
-/// How near colours come, where they are the farthest, and why.
+/// Text of the distance of colours, with the place of the greatest, and the reason.
 fn converted(distance: &Distance, cell_m: f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let Some(farthest) = &distance.farthest else {
         return f.write_str("colours as before");
@@ -91,12 +91,12 @@ fn converted(distance: &Distance, cell_m: f64, f: &mut fmt::Formatter<'_>) -> fm
         f,
         "; {worst:.1} at most, {x:.1} mm from the left and {y:.1} mm from below, under {film_um:.0} µm of paint"
     )?;
-    if worst <= FAR {
+    if worst <= OBVIOUS_DELTA_E {
         return Ok(());
     }
     let share = 100.0 * distance.far as f64 / distance.cells.max(1) as f64;
     write!(
         f,
-        ": {why}; {share:.1} % of the paint is off by more than {FAR}"
+        ": {why}; {share:.1} % of the paint is off by more than {OBVIOUS_DELTA_E}"
     )
 }

@@ -1,4 +1,4 @@
-//! How an edit is written in a script and on the command line.
+//! Form of an edit in a script and on the command line.
 
 #[cfg(feature = "cli")]
 use maulstick_types::Edit;
@@ -10,7 +10,7 @@ use super::PaintingEdit;
 /// Form of an edit as a step of a script.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepForm {
-    /// The key that says what is done.
+    /// Key of the step.
     pub key: &'static str,
     /// True if that key takes `true` alone.
     pub switch: bool,
@@ -78,9 +78,9 @@ impl CommandForm {
     }
 }
 
-/// How an edit is written: each says it in its own file.
+/// Form of an edit, defined in the edit's own file.
 pub trait Form: EditFields + PaintingEdit {
-    /// Its steps in scripts; none if a script cannot ask for it.
+    /// Its steps in scripts; empty if scripts do not have it.
     const STEPS: &'static [StepForm];
     /// Words of the command line that means [`example`](Self::example), without the program; `None` if there is none.
     const ARGUMENTS: Option<&'static [&'static str]>;

@@ -1,8 +1,8 @@
-//! Edits: all that changes a painting besides its brushes' strokes, one in one file each.
+//! Edits: all changes of a painting besides its brushes' strokes, each in its own file.
 //!
-//! A file has the struct, whose doc comment is its help, its form as a step of a script and as a command, what it does to
-//! the painting, and its words. On the wire and in the journal it is an [`Edit`] of its name. A number or text that has a
-//! range is a type of [`values`](maulstick_types::values), so what is read is valid.
+//! A file has the struct, whose doc comment is its help, its form as a step of a script and as a command, its effect on
+//! the painting, and its words. On the wire and in the journal it is an [`Edit`] with its name. A number or text with a
+//! range is a type of [`values`](maulstick_types::values), so a parsed edit is valid.
 //!
 //! A new edit is its file, a line in the list below, and its widget.
 
@@ -38,7 +38,7 @@ use maulstick_types::{Edit, Mixture};
 use crate::error::EditError;
 use crate::painting::Painting;
 
-/// Hands the list of all edits to a macro.
+/// Passes the list of all edits to a macro.
 #[macro_export]
 macro_rules! for_each_edit {
     ($with:ident) => {
@@ -54,8 +54,7 @@ macro_rules! for_each_edit {
 impl Painting {
     /// Applies an edit.
     ///
-    /// # Errors
-    /// [`EditError`] says why it is refused; then the painting is as it was.
+    /// # Errors [`EditError`] with the reason of a refusal; the painting is then unchanged.
     pub fn apply(&mut self, edit: impl Into<Edit>) -> Result<Applied, EditError> {
         read(&edit.into())?.apply(self)
     }
@@ -63,16 +62,15 @@ impl Painting {
 
 /// An edit as the painting carries it out.
 pub trait PaintingEdit: Debug {
-    /// Changes a painting; where it is refused the painting is as it was.
+    /// Changes a painting, which is unchanged on a refusal.
     ///
-    /// # Errors
-    /// [`EditError`] says why it is refused.
+    /// # Errors [`EditError`] with the reason of a refusal.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError>;
 
-    /// What it does, in the words of a log.
+    /// The edit in the words of a log.
     fn log_words(&self) -> String;
 
-    /// Words that introduce its result on the command line; `None` if it is done without a word.
+    /// Words that introduce its result on the command line; `None` if it has none.
     fn reply(&self) -> Option<&'static str> {
         None
     }

@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 
-/// Reads a text as `FromStr` does.
+/// Parses a text by `FromStr`.
 pub(super) struct Text<T>(&'static str, std::marker::PhantomData<T>);
 
 impl<T: FromStr<Err: fmt::Display>> Visitor<'_> for Text<T> {
@@ -34,7 +34,7 @@ where
     }
 }
 
-/// As [`text`], of a key that may be absent.
+/// [`text`] for a key that may be absent.
 pub(super) fn optional<'de, T, D>(from: D) -> Result<Option<T>, D::Error>
 where
     T: FromStr<Err: fmt::Display> + Deserialize<'de>,

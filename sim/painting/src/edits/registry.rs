@@ -71,10 +71,9 @@ pub fn entries() -> &'static [EditEntry] {
     ENTRIES
 }
 
-/// An edit as the painting carries it out.
+/// An edit in executable form.
 ///
-/// # Errors
-/// [`EditFault`] for one that this program does not know, and for a field that is out of range.
+/// # Errors [`EditFault`] for an unknown one, and for a field that is out of range.
 pub fn read(edit: &Edit) -> Result<Box<dyn PaintingEdit>, EditFault> {
     (EditEntry::find(edit)?.read)(edit)
 }
@@ -145,7 +144,7 @@ mod tests {
             count += 1;
         }
         assert_eq!(count, 27);
-        // A byte of a number is seen.
+        // A changed byte of a number is detected.
         let dry = EARLIER
             .lines()
             .find(|line| line.starts_with("Dry "))

@@ -1,8 +1,8 @@
 //! Undo and redo: steps as lists of tiles that are swapped.
 //!
-//! Steps stand in their order. Undone ones stay until the painter goes on painting. Where the history
-//! takes too much room its oldest two steps become one, so that it goes back as far as before, in
-//! fewer steps; the newest sixteen stay apart.
+//! Steps are in order. Undone ones stay until the painter continues painting. Where the history exceeds its quota its
+//! two oldest steps are merged, so that it goes back as far as before, in fewer steps; the newest sixteen stay
+//! separate.
 
 mod step;
 mod walk;
@@ -22,10 +22,10 @@ use maulstick_types::paint::StepName;
 
 pub use crate::ledger::Booked;
 
-/// Bytes of a history at most, unless a painting says otherwise.
+/// Greatest size of a history, bytes, unless a painting sets another.
 pub const QUOTA: u64 = 2 << 30;
 /// The newest steps, which are never merged.
-const APART: usize = 16;
+const SEPARATE_STEPS: usize = 16;
 
 /// Steps that can be undone and redone.
 #[derive(Debug)]
@@ -40,7 +40,7 @@ pub struct History {
     touched: BTreeSet<u64>,
     /// See [`part_at`](Self::part_at).
     part: u64,
-    /// True if a step changed more than what brushes carry, be it gone by now; as of the newest checkpoint.
+    /// True if any step, including dropped ones, changed more than brush loads, as of the newest checkpoint.
     changed_surfaces: bool,
     /// Most bytes of the pages that it holds.
     pub(crate) quota: u64,
@@ -53,8 +53,8 @@ impl Default for History {
 }
 
 impl History {
-    /// A saved history: number of the newest step and the steps that were undone, the finished steps, the open ones,
-    /// and its limit in bytes.
+    /// A saved history: number of the newest step and the undone steps, the finished steps, the open ones, and its
+    /// limit in bytes.
     #[must_use]
     pub(crate) fn restored(
         (next, undone): (u64, Vec<u64>),
@@ -75,14 +75,14 @@ impl History {
         }
     }
 
-    /// True if a step has ever changed more than what brushes carry.
+    /// True if any step has changed more than brush loads.
     #[must_use]
     pub(crate) fn has_changed_surfaces(&self) -> bool {
         let changes = |step: &Step| !step.tiles.is_empty() || step.effects.materials.is_some();
         self.changed_surfaces || !self.open.is_empty() || self.steps.values().any(changes)
     }
 
-    /// Notes it for good: a checkpoint keeps it, and a history that begins there has none of the steps.
+    /// Records that permanently: a checkpoint stores it, because a history that begins there has none of the steps.
     pub(crate) fn note_changed_surfaces(&mut self, has_changed: bool) {
         self.changed_surfaces = has_changed;
     }
@@ -121,15 +121,14 @@ impl History {
         open.find(|step| step.brush.as_deref() == brush)
     }
 
-    /// Remembers what a step replaced: the first tile of each place.
+    /// Stores the tile that a step replaced, the first at each place.
     pub fn replaced(&mut self, brush: Option<&str>, place: TilePlace, tile: TileRef) {
         if let Some(open) = self.open_of(brush) {
             open.tiles.entry(place).or_insert(tile);
         }
     }
 
-    /// Takes the steps that are not finished and of which `which` says so, to be finished by
-    /// [`push`](Self::push).
+    /// Takes the unfinished steps selected by `which`, to be finished by [`push`](Self::push).
     pub(crate) fn take_open(&mut self, which: impl Fn(&OpenStep) -> bool) -> Vec<OpenStep> {
         let (taken, left) = std::mem::take(&mut self.open).into_iter().partition(which);
         self.open = left;
@@ -150,7 +149,7 @@ impl History {
         self.steps.insert(step.id, step);
     }
 
-    /// The newest step that is done, of a brush or of all.
+    /// The newest done step, of a brush or of all.
     #[must_use]
     pub(crate) fn last_done(&self, brush: Option<&str>) -> Option<&Step> {
         let of = |step: &&Step| brush.is_none() || step.brush.as_deref() == brush;
@@ -158,7 +157,7 @@ impl History {
         done.find(of)
     }
 
-    /// The newest step that is done and came after another one, on what that changed.
+    /// The newest done step after another one that changed the same tiles.
     #[must_use]
     pub(crate) fn later_on(&self, step: &Step) -> Option<&Step> {
         let later = self
@@ -178,7 +177,7 @@ impl History {
         undone.filter_map(|id| self.steps.get(id)).find(of)
     }
 
-    /// Notes that a step was undone.
+    /// Marks a step as undone.
     pub fn undone(&mut self, id: u64) {
         if let Some(step) = self.steps.get_mut(&id) {
             step.done = false;
@@ -187,7 +186,7 @@ impl History {
         }
     }
 
-    /// Notes that a step was done again. It comes after all that was done meanwhile.
+    /// Marks a step as redone. It comes after all steps done meanwhile.
     pub fn redone(&mut self, id: u64) {
         self.undone.retain(|other| *other != id);
         let newest = self.last_done(None).map_or(0, |step| step.id);
@@ -272,8 +271,8 @@ impl History {
         self.part = id;
     }
 
-    /// Merges the oldest steps until the history keeps to its quota, or only the newest are apart; `besides` counts the
-    /// bytes of `pager` that are not the history's.
+    /// Merges the oldest steps until the history keeps to its quota, or only the newest are left; `besides` is the
+    /// bytes of `pager` outside of the history.
     pub(crate) fn keep_to_quota(&mut self, pager: &Pager, besides: impl FnOnce() -> u64) {
         if pager.counts().held() <= self.quota {
             return;
@@ -282,10 +281,10 @@ impl History {
         while pager.counts().held().saturating_sub(besides) > self.quota && self.merge_oldest() {}
     }
 
-    /// Makes one step of the two oldest neighbours that may become one; of undone ones the oldest goes.
-    /// False where only the newest are left, which stay apart.
+    /// Merges the two oldest neighbouring steps that can be merged; of undone ones the oldest is dropped. False where
+    /// only the newest are left, which stay separate.
     pub(crate) fn merge_oldest(&mut self) -> bool {
-        let mergeable = self.steps.len().saturating_sub(APART);
+        let mergeable = self.steps.len().saturating_sub(SEPARATE_STEPS);
         let ids: Vec<u64> = self.steps.keys().take(mergeable + 1).copied().collect();
         let parts = |one: u64, other: u64| one <= self.part && self.part < other;
         let pair = ids.windows(2).find(|pair| !parts(pair[0], pair[1]));
@@ -328,8 +327,8 @@ impl History {
         });
     }
 
-    /// Drops undone steps, and those that were undone before them and share tiles with them: they could be redone only
-    /// on top of them.
+    /// Drops undone steps, and those undone before them that share tiles with them: they could be redone only on top of
+    /// them.
     fn drop_undone(&mut self, mut gone: BTreeSet<u64>) {
         let mut lost: BTreeSet<TilePlace> = BTreeSet::new();
         for id in self.undone.iter().rev() {

@@ -1,4 +1,4 @@
-//! Steps: what one operation of the painter changed.
+//! Steps: the changes of one operation of the painter.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -109,7 +109,7 @@ pub(crate) fn name_models(materials: &mut [SurfaceMaterial], models: &BTreeMap<u
     named
 }
 
-/// State of a painting besides its tiles, as far as a step can change it.
+/// State of a painting besides its tiles that a step can change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NonTileState {
     /// Loads of the brushes, by name.

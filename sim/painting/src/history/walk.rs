@@ -41,7 +41,7 @@ pub struct ListedStep {
     pub done: bool,
 }
 
-/// Name of what a brush did at these places.
+/// Name of a brush's action at these places.
 pub(crate) fn placed<'a>(what: &StepName, places: impl Iterator<Item = &'a TilePlace>) -> StepName {
     let mut surfaces = places.map(|place| place.0).peekable();
     let on_palette = surfaces.peek().is_some() && surfaces.all(|surface| surface == PALETTE);
@@ -49,8 +49,8 @@ pub(crate) fn placed<'a>(what: &StepName, places: impl Iterator<Item = &'a TileP
 }
 
 impl History {
-    /// The steps to undo or to redo, in order, until the one of this number is the newest that is done, 0 for none;
-    /// `None` if there is no such step. Steps that are not finished are left out.
+    /// The steps to undo or to redo, in order, until the one with this number is the newest done one, 0 for none;
+    /// `None` if there is no such step. Unfinished steps are left out.
     pub(crate) fn way_to(&self, id: u64) -> Option<Vec<(Direction, &Step)>> {
         let target = match id {
             0 => None,
@@ -67,8 +67,8 @@ impl History {
         Some(steps.map(|step| (Direction::Redo, step)).collect())
     }
 
-    /// How many steps before one are undone: after it the painting is another without them. `None` if there is no such
-    /// step; 0 is the beginning.
+    /// Number of undone steps before a step, which depends on them. `None` if there is no such step; 0 is the
+    /// beginning.
     #[must_use]
     pub fn undone_before(&self, id: u64) -> Option<u64> {
         let known = id == 0 || self.steps.contains_key(&id) || self.is_open(id);
@@ -82,8 +82,8 @@ impl History {
         self.open.iter().any(|step| step.id == id)
     }
 
-    /// The steps around the present one, `most` at most, as lists show them: the newest first, those that are undone,
-    /// those that are not finished, those that are done.
+    /// At most `most` steps around the present one, in the order of a list: the newest first, undone ones, unfinished
+    /// ones, done ones.
     #[must_use]
     pub fn around(&self, most: usize) -> Vec<ListedStep> {
         let listed = |step: &Step| ListedStep {

@@ -15,7 +15,7 @@ use super::surfaces::SurfaceState;
 use crate::ledger::{Booked, Ledger, LedgerReport, Stocks, Tallies, balance};
 use crate::snapshot::WorkSnapshot;
 
-/// What was booked and counted.
+/// Booked and counted paint.
 #[derive(Clone, Default)]
 pub(crate) struct Accounts {
     pub(crate) ledger: Ledger,
@@ -34,13 +34,13 @@ impl Accounts {
         }
     }
 
-    /// Notes the time of a state.
+    /// Stores the time of a state.
     pub(crate) fn note_time(&mut self, event_ns: u64) {
         let (first, last) = self.work.span_ns.unwrap_or((event_ns, event_ns));
         self.work.span_ns = Some((first, last.max(event_ns)));
     }
 
-    /// Notes what steps of the paint model did.
+    /// Adds the report of the paint model's steps.
     pub(crate) fn note(&mut self, report: &StepReport) {
         self.work.footprint_cells += report.footprint_cells;
         self.ledger.from_mode(&report.from_nowhere);
@@ -54,8 +54,8 @@ impl Accounts {
         booked
     }
 
-    /// Books again what a step booked, `times` 1, or takes it back, −1.
-    pub(crate) fn turn(&mut self, booked: &Booked, times: i64) {
+    /// Repeats the bookings of a step with `times` 1, or reverses them with −1.
+    pub(crate) fn book(&mut self, booked: &Booked, times: i64) {
         self.ledger.book(booked, times);
         self.accounted = self.ledger.clone();
     }

@@ -23,11 +23,11 @@ pub struct Checkpoint {
     pub loads: BTreeMap<String, Page<BrushLoad>>,
     /// Steps that came or changed; those that are not finished are among them.
     pub steps: Vec<Step>,
-    /// Steps that went.
+    /// Numbers of dropped steps.
     pub gone_steps: Vec<u64>,
     /// Versions that came or changed.
     pub named: Vec<Named>,
-    /// Versions that went.
+    /// Names of deleted versions.
     pub gone_named: Vec<String>,
     /// Pages and dry layers without references.
     pub dead: Vec<u64>,
@@ -100,7 +100,7 @@ impl Painting {
         }
     }
 
-    /// Makes the next checkpoint hold the whole history and all versions: its document has none of them.
+    /// Makes the next checkpoint contain the whole history and all versions, which its document lacks.
     pub fn tell_all_again(&mut self) {
         self.bench.past.touch_all();
     }

@@ -103,15 +103,14 @@ impl Painting {
         &self.bench.desk.optics.assets
     }
 
-    /// Takes a picture in, for a ground or a tooth that is called by its hash, which is returned.
+    /// Adds a picture for a ground or a tooth, and returns its hash.
     ///
-    /// # Errors
-    /// As [`Assets::add`].
+    /// # Errors As [`Assets::add`].
     pub fn embed(&mut self, bytes: Arc<[u8]>) -> Result<String, EditError> {
         Ok(self.bench.desk.optics.assets.add(bytes)?)
     }
 
-    /// A surface without what was painted on it.
+    /// A surface without its painting.
     #[must_use]
     pub fn bare(&self, surface: u32) -> Option<&Arc<BlankSurface>> {
         self.bench
@@ -165,7 +164,7 @@ impl Painting {
         self.bench.desk.surfaces.pager.counts().resident
     }
 
-    /// Steps of the paint model and cells of its footprints so far.
+    /// Number of steps of the paint model and of cells of its footprints so far.
     #[must_use]
     pub fn work(&self) -> (u64, u64) {
         (
@@ -180,8 +179,8 @@ impl Painting {
         self.bench.brushes.longer()
     }
 
-    /// Introduces a brush, or gives a known one another file; what it carries it keeps, spread anew
-    /// where the other has another number of strips. False where nothing is new.
+    /// Defines a brush, or replaces the file of a known one; its load is kept, and spread again where the number of
+    /// strips differs. False where nothing is new.
     pub fn define_brush(&mut self, name: &str, file: BrushFile) -> bool {
         if self
             .bench
@@ -224,7 +223,7 @@ impl Painting {
         self.bench.brushes.by_source(source)?.stroke
     }
 
-    /// True if the newest step of the brush with this hash of its name has not ended: nothing lies over it.
+    /// True if the newest step of the brush with this hash of its name is open, and so covered by none.
     #[must_use]
     pub fn has_open_step(&self, source: u32) -> bool {
         let brush = self.brush_of(source);
@@ -257,7 +256,7 @@ impl Painting {
         brushes.map(move |brush| (brush.name.as_str(), brush.carried(cell_m)))
     }
 
-    /// Forgets what the strokes of a brush would load.
+    /// Drops the loads queued for the next strokes of a brush.
     pub fn forget_loads(&mut self, brush: &str) {
         if let Some(brush) = self.bench.brushes.find_mut(brush) {
             brush.loads.clear();

@@ -29,7 +29,7 @@ const OPAQUE_M: f64 = 0.01;
 /// Paints by slot, and shares of them.
 pub(crate) type SlotShares = Vec<(usize, f64)>;
 
-/// Paints, their look under the light, and the files that grounds and teeth are made of.
+/// Paints, their appearance under the light, and the files of grounds and teeth.
 #[derive(Clone)]
 pub(crate) struct Optics {
     pub(crate) library: PaintLibrary,
@@ -63,7 +63,7 @@ impl Optics {
         Ok(optics)
     }
 
-    /// A surface before anything is painted on it; `relief` is that of before, if it is known.
+    /// An unpainted surface; `relief` is the earlier one, if known.
     pub(crate) fn blank(
         &self,
         surface: &Surface,
@@ -161,7 +161,7 @@ impl Optics {
         })
     }
 
-    /// Takes over the dry layers of a scene.
+    /// Copies the dry layers of a scene.
     pub(crate) fn set_layers(&mut self, scene: &Scene) {
         Arc::make_mut(&mut self.look).set_layers(&scene.layers);
         self.note(scene);
@@ -181,7 +181,7 @@ impl Optics {
         self.note(scene);
     }
 
-    /// Notes in the look what it is made of: light, layers, grounds and wells, paints.
+    /// Adds the parts of the appearance to its hash: light, layers, grounds and wells, paints.
     pub(crate) fn note(&mut self, scene: &Scene) {
         let materials = materials(scene);
         let light = Light {
@@ -196,7 +196,7 @@ impl Optics {
             softness: 0.0,
             ..scene.light.clone()
         };
-        // Of the layers only how opaque they are is seen.
+        // Only the opacity of layers is visible.
         let layers = scene.layers.iter();
         let veiled = layers.filter(|layer| layer.opacity != 1.0);
         let veiled: Vec<(u32, f32)> = veiled.map(|layer| (layer.number, layer.opacity)).collect();

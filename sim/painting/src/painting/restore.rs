@@ -40,7 +40,7 @@ pub struct Restored {
     pub named: Vec<Named>,
     /// The pictures that its grounds and teeth are made of, those of its history among them.
     pub embedded: Assets,
-    /// Where its record begins, if it has one.
+    /// Beginning of its record, if it has one.
     pub beginning: Option<Arc<Beginning>>,
 }
 

@@ -1,4 +1,4 @@
-//! A painting as it is at a moment, to be looked at beside the one that is painted on.
+//! A snapshot of a painting, for reading beside the painting itself.
 
 use maulstick_canvas::tile::{TileId, Version};
 
@@ -9,8 +9,8 @@ use crate::error::EditError;
 use crate::history::Direction;
 
 impl Painting {
-    /// The painting as it is, with its versions, without brushes and history. Its tiles are shared with
-    /// this one, whatever becomes of that; to make it takes as long as to count them.
+    /// The current painting, with its versions, without brushes and history. Its tiles are shared with this one,
+    /// whatever happens to it; making it takes as long as counting them.
     pub fn still(&mut self) -> Self {
         self.commit();
         let mut bench = Workbench::new(self.bench.desk.clone());
@@ -22,10 +22,9 @@ impl Painting {
         }
     }
 
-    /// Has a [`still`](Self::still) show the painting as it was in a version.
+    /// Shows the painting of a version in a [`still`](Self::still).
     ///
-    /// # Errors
-    /// [`EditError`] for an unknown version.
+    /// # Errors [`EditError`] for an unknown version.
     pub fn show_version(&mut self, name: &str) -> Result<(), EditError> {
         let Workbench { desk, past, .. } = &mut self.bench;
         let version = past.versions.find(name)?;
@@ -41,8 +40,8 @@ impl Painting {
         Ok(())
     }
 
-    /// A [`still`](Self::still) as the painting was when the step of this number was done and none after it, 0 for
-    /// before all of them; `None` if there is no such step.
+    /// A [`still`](Self::still) of the painting when the step with this number was the newest done one, 0 for before
+    /// all of them; `None` if there is no such step.
     pub fn still_after(&mut self, step: u64) -> Option<Self> {
         let mut still = self.still();
         if self.bench.past.history.is_open(step) {

@@ -11,9 +11,9 @@ use crate::ledger::Ledger;
 /// State of the paint after it was applied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wetness {
-    /// It stays wet.
+    /// The underpainting stays wet.
     Wet,
-    /// It dries at once, with all that is wet on the surface.
+    /// It dries at once, with all wet paint of the surface.
     Dry {
         /// Name of the layer; a number if it is empty.
         name: String,
@@ -25,15 +25,15 @@ pub enum Wetness {
 pub struct LaidTile {
     /// Tile number.
     pub id: TileId,
-    /// Number of a paint, and its quanta in each of the [`TILE_CELLS`](maulstick_canvas::planes::TILE_CELLS) cells,
-    /// row after row from the bottom.
+    /// Index of a paint, and its quanta in each of the [`TILE_CELLS`](maulstick_canvas::planes::TILE_CELLS) cells, row
+    /// by row from the bottom.
     pub planes: Vec<(usize, Vec<u32>)>,
 }
 
 impl Painting {
     /// Applies paint to a surface, cell by cell, from the tubes of `paints`: one step that can be undone. Cells beyond
-    /// the surface's edge and in wells get none, and none more than it can hold. If it is to dry, wet paint dries
-    /// before it, as a layer of its own. Returns the name of its layer, if it dried.
+    /// the surface's edge and in wells get none, and the others at most their capacity. If it is to dry, wet paint
+    /// dries before it, as a separate layer. Returns the name of its layer, if it dried.
     ///
     /// # Errors
     /// [`EditError`] for an unknown surface or paint, or one paint more than there are slots; then nothing is applied.

@@ -18,7 +18,7 @@ struct LastStroke {
     number: u64,
     /// The first state that has some of it.
     first: u64,
-    /// First and last state that have nothing of another stroke.
+    /// First and last state, which belong to no other stroke.
     states: [u64; 2],
 }
 
@@ -30,11 +30,11 @@ impl LastStroke {
 }
 
 impl Sequencer {
-    /// Accepts a command, as [`command`](Self::command) does; `queued` are the states that wait of the brush behind
-    /// which it goes, in order.
+    /// Accepts a command, as [`command`](Self::command) does; `queued` are the waiting states of the brush behind which
+    /// it goes, in order.
     ///
-    /// An undo that is more than half a second ahead of the paint drops the newest stroke from the queue: what is
-    /// painted of it is undone, the rest is never painted, and no redo brings it back.
+    /// An undo that is more than half a second ahead of the paint drops the newest stroke from the queue: its painted
+    /// part is undone, the rest is never painted, and redo does not restore it.
     pub fn command_behind<'a>(
         &mut self,
         mut request: CommandRequest,
@@ -82,14 +82,14 @@ impl Sequencer {
             .collect();
         let (oldest, newest) = (before.first()?.0, before.last()?.0);
         let spans = newest.event_ns >= oldest.event_ns + CUT_NS;
-        // Where states are still on their way, so may be the end of the stroke.
+        // Where states are still to come, the end of the stroke may be among them.
         let last = last_stroke(&before).filter(|_| spans && newest.seq == after.sequence)?;
         if self.waits_within(origin, last.first) {
             return None;
         }
         let newest_stroke = self.painting.newest_stroke(origin.source);
         let is_painted = newest_stroke == Some((origin.epoch, last.number));
-        // Where something was done since, that is undone, and the stroke stays whole.
+        // A later action is undone instead, and the stroke stays whole.
         if is_painted && !self.painting.has_open_step(origin.source) {
             return None;
         }
@@ -166,7 +166,7 @@ impl Sequencer {
     }
 }
 
-/// What an undo has dropped.
+/// The part dropped by an undo.
 enum Cut {
     /// All of a stroke; the undo is answered.
     Whole(Outcome),

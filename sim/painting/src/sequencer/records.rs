@@ -29,7 +29,7 @@ const OWN: u64 = 0;
 pub enum Accepted {
     /// A state of a brush.
     State {
-        /// Its header, as it came.
+        /// Header as received.
         header: Header,
         /// Itself.
         state: BrushState,
@@ -58,12 +58,12 @@ impl Record {
 }
 
 impl Sequencer {
-    /// Keeps what is accepted from now on, for [`take_records`](Self::take_records).
+    /// Keeps accepted messages from now on, for [`take_records`](Self::take_records).
     pub fn record(&mut self) {
         self.records.get_or_insert_default();
     }
 
-    /// Keeps nothing of what is accepted from now on.
+    /// Keeps no accepted messages from now on.
     pub fn stop_recording(&mut self) {
         self.is_unrecorded |= self.records.take().is_some_and(|left| !left.is_empty());
     }
@@ -100,10 +100,9 @@ impl Sequencer {
         }
     }
 
-    /// Applies an edit of the one who runs the sequencer, at once.
+    /// Applies an edit of the sequencer's owner, at once.
     ///
-    /// # Errors
-    /// [`EditError`] where the painting refuses it.
+    /// # Errors [`EditError`] where the painting refuses it.
     pub fn edit(&mut self, edit: impl Into<Edit>) -> Result<Applied, EditError> {
         let edit = edit.into();
         let applied = self.painting.apply(edit.clone())?;
@@ -111,10 +110,9 @@ impl Sequencer {
         Ok(applied)
     }
 
-    /// Begins a take of the one who runs the sequencer: its samples have this device and epoch.
+    /// Begins a take of the sequencer's owner: its samples have this device and epoch.
     ///
-    /// # Errors
-    /// [`EditError`] where a load is wrong.
+    /// # Errors [`EditError`] where a load is wrong.
     pub fn begin_own_take(
         &mut self,
         brush: &str,
@@ -143,7 +141,7 @@ impl Sequencer {
 
     /// Resumes after the program ended: the next states of brushes begin new paths, and no take has a brush until its
     /// player is there again.
-    pub fn go_on(&mut self) {
+    pub fn resume(&mut self) {
         self.let_go();
         self.decide(Decision::Resumed);
     }
@@ -161,7 +159,7 @@ impl Sequencer {
         takes.any(|take| !take.ended && !self.gone.contains(&take.device))
     }
 
-    /// Introduces a brush, or gives a known one another file.
+    /// Defines a brush, or replaces the file of a known one.
     ///
     /// # Errors
     /// [`BrushError::TooMany`] for a new one where there are [so many](BRUSHES_MOST).
@@ -237,12 +235,12 @@ impl Sequencer {
         (self.records, self.is_unrecorded) = (recording, is_unrecorded);
     }
 
-    /// Enters that something else computes the paint than before, or has met a limit, if that is so.
-    pub(super) fn tell_fall(&mut self) {
+    /// Journals a change of the paint's backend, or a limit that it has met.
+    pub(super) fn publish_backend_change(&mut self) {
         if let Some(limit) = self.painting.take_limit() {
             self.decide(limit);
         }
-        if let Some(why) = self.painting.take_fall() {
+        if let Some(why) = self.painting.take_backend_change() {
             let name = self.painting.backend();
             self.decide(Decision::Fallback { name, why });
         }
@@ -257,7 +255,7 @@ impl Sequencer {
         }
     }
 
-    /// The sequencer besides its painting, as a document keeps it.
+    /// State of the sequencer besides its painting, for a document.
     #[must_use]
     pub fn kept(&self) -> SequencerSnapshot {
         let consumed = self.consumed.iter();

@@ -1,4 +1,4 @@
-//! A recorded session accepted again, record by record, in a painting that goes on.
+//! A recorded session accepted again, record by record, in a continued painting.
 
 use crate::error::EditError;
 use maulstick_types::Flags;
@@ -8,8 +8,8 @@ use maulstick_types::paint::{Decision, Entry};
 use super::{Accepted, Record, Sequencer};
 
 impl Sequencer {
-    /// Until [`end_repeating`](Self::end_repeating) hands paint nothing, other commands are refused, and no tick passes but
-    /// those of a session.
+    /// Until [`end_repeating`](Self::end_repeating) live hands paint nothing, other commands are refused, and only the
+    /// ticks of a session pass.
     pub fn begin_repeating(&mut self) {
         self.repeats = true;
     }
@@ -22,8 +22,7 @@ impl Sequencer {
 
     /// Accepts a record of a session as if it had come now: it takes the next place in the journal.
     ///
-    /// # Errors
-    /// [`EditError`] where the painting refuses what it accepted then.
+    /// # Errors [`EditError`] where the painting refuses it.
     pub fn repeat(&mut self, record: Record) -> Result<(), EditError> {
         match record.what {
             Accepted::State { header, state } => {
@@ -76,7 +75,7 @@ impl Sequencer {
             }
             Accepted::Entry(Entry::Decision { what }) => {
                 if what == Decision::Resumed {
-                    self.go_on();
+                    self.resume();
                 }
                 Ok(())
             }
@@ -85,10 +84,10 @@ impl Sequencer {
         }
     }
 
-    /// Hands paint again; their brushes begin anew.
+    /// Live hands paint again; their brushes restart.
     pub fn end_repeating(&mut self) {
         if std::mem::take(&mut self.repeats) {
-            self.go_on();
+            self.resume();
         }
     }
 }

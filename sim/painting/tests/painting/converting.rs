@@ -90,7 +90,7 @@ fn mean_difference(one: &[u8], other: &[u8]) -> f64 {
 
 #[test]
 fn volumes_stay_colours_come_near_and_undo_brings_all_back() {
-    // Mean difference of a channel, of 255: dAb's relief is embossed besides, which no conversion changes.
+    // Mean difference of a channel, of 255: dAb's relief is embossed, which conversions do not change.
     const LIMIT: f64 = 15.0;
     for (from, to) in [("dab", "impasto"), ("impasto", "dab")] {
         let mut painting = painted(from);

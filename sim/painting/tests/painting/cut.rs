@@ -1,4 +1,4 @@
-//! An undo ahead of the paint: what waits of the stroke is dropped, and the painting is as if it never was.
+//! An undo ahead of the paint: the waiting part of the stroke is dropped, and the painting is as if it had never been.
 
 use maulstick_brush::BrushFile;
 use maulstick_painting::edits::{Clean, Redo, Undo};
@@ -29,7 +29,7 @@ fn studio(file: &BrushFile) -> Sequencer {
     sequencer
 }
 
-/// So many strokes, one above the other, with so many ms from state to state.
+/// Strokes, one above the other, with `ms` from state to state.
 fn strokes(file: &BrushFile, count: u64, ms: u64) -> Queue {
     let at = |seq: u64| {
         let (stroke, at) = (seq / STATES, seq % STATES);
@@ -172,7 +172,7 @@ fn a_stroke_whose_end_is_still_on_its_way_is_not_cut() {
     assert!(result(&mut sequencer).is_empty());
 }
 
-/// An undo takes back what was done last, so a stroke that is begun may not lose its end.
+/// An undo reverts the last action, so a stroke in progress must not lose its end.
 #[test]
 fn a_begun_stroke_that_something_was_done_after_stays_whole() {
     let file = round(5.0, 48);

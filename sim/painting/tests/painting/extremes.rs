@@ -1,5 +1,5 @@
 //! Brushes of one cell and of thousands, leaps and very long steps, on one thread and on many: nothing panics, no
-//! quantum is lost, and every cell holds a whole number of quanta that it can hold.
+//! quantum is lost, and every cell holds a valid number of quanta.
 
 use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::CELL_MAX;
@@ -39,7 +39,7 @@ impl Case {
         round(self.brush_mm, self.strips)
     }
 
-    /// A painting with what a full brush leaves there twice, lifted between.
+    /// A painting with two strokes of a full brush, lifted in between.
     fn painted(&self) -> Painting {
         let mut painting = painting(&PaintingSetup {
             cells: [self.side; 2],
@@ -67,7 +67,7 @@ impl Case {
         painting
     }
 
-    /// Paints on one thread and on many; the same comes out, and all is there.
+    /// Paints on one thread and on many, with the same result and without loss.
     fn holds(&self) {
         let counts = |painting: &mut Painting| {
             assert_eq!(painting.report().quanta_missing, 0, "{self:?}");

@@ -1,4 +1,4 @@
-//! What light and drying make of a painting.
+//! Effects of light and drying on a painting.
 
 use std::sync::Arc;
 
@@ -154,7 +154,7 @@ fn a_relit_painting_is_one_that_was_painted_under_that_light() {
     );
     assert!(one == other);
     assert!(farthest(&one, &day) > 20, "under a lamp all is yellow");
-    // The wells and the swatches of the paints are seen under it too.
+    // The wells and the swatches of the paints change too.
     assert_eq!(before.scene().paints, after.scene().paints);
     assert_eq!(
         before.bare(1).map(|bare| bare.wells.clone()),
@@ -248,7 +248,7 @@ fn a_light_that_is_none_changes_nothing() {
     );
 }
 
-/// A flat bare canvas, adapted or not, shows what a spectrometer reads of it under that light.
+/// A flat bare canvas, adapted or not, has the colour of a spectrometer reading under that light.
 #[test]
 fn a_flat_surface_shows_its_colour_and_the_colour_of_its_light() {
     for adapted in [true, false] {

@@ -1,4 +1,4 @@
-//! How brushes are used and surfaces are prepared (Baxter 2004, § 6.4.1, 6.7, 6.8).
+//! Handling of brushes and preparation of surfaces (Baxter 2004, § 6.4.1, 6.7, 6.8).
 
 use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::{Counts, QUANTUM_M, SLOTS};
@@ -152,8 +152,7 @@ fn a_full_sponge_never_runs_out_and_an_empty_one_never_fills() {
         assert!(total(&easel.on(CANVAS)) > before);
         laid.push(total(&easel.on(CANVAS)) - before);
     }
-    // Where it comes to a fresh place it gives as it gave at first: the last two lie in part beside the
-    // canvas or on what is painted.
+    // On fresh ground it gives as at first; the last two lie in part beside the canvas or on paint.
     let least = laid.iter().copied().fold(u64::MAX, u64::min);
     assert!(2 * least > laid[0], "{laid:?}");
     assert_eq!(easel.account("brush"), loaded);
@@ -181,7 +180,7 @@ fn without_push_paint_stays_where_nothing_takes_it_up() {
     );
     assert!(spread(BrushMode::Sponge) > 1.1 * laid);
     assert!(spread(BrushMode::SpongeNoPush) <= laid);
-    // A brush that is not a sponge sets down what it has taken up, but no ridge.
+    // A brush that is not a sponge deposits its load, but no ridge.
     assert!(spread(BrushMode::NoPush) < 0.8 * spread(BrushMode::Normal));
 }
 
@@ -243,7 +242,7 @@ fn a_brush_adds_no_more_than_its_most() {
         easel.on(CANVAS);
         easel.films().into_iter().fold(0.0, f64::max)
     };
-    // As much again in hollows.
+    // The same again in hollows.
     assert!(thickest(5e-6) <= 2.0 * 5e-6 + 2e-9);
     assert!(thickest(0.0) > 6e-6, "without a bound it is thicker");
 }
@@ -362,7 +361,7 @@ fn piles_deplete_or_last_as_the_painter_says() {
         left < 1e-6 && left > -1e-2 && carried > 0.0,
         "{left:e} {carried:e}"
     );
-    // What is mixed there grows by what the brush leaves, and never becomes less.
+    // A mixture there grows by the brush's deposit, and never shrinks.
     assert!(
         -mode >= 0.999 * carried && -mode < 1.2 * carried,
         "{mode:e} {carried:e}"
@@ -372,7 +371,7 @@ fn piles_deplete_or_last_as_the_painter_says() {
 /// Stirred in a pile, a brush is filled through and through, and not its films alone.
 #[test]
 fn the_palette_fills_the_reservoir() {
-    // Of a brush that was loaded all has its share of films and of what is inside.
+    // A load fills films and inside in their proportions.
     let load = brush().load;
     let mut easel = Easel::new();
     easel.load(WHITE);
@@ -409,7 +408,7 @@ fn thinned_paint_clings_in_thinner_films() {
     assert!(total(&easel.on(CANVAS)) > 0, "thinner alone is a film too");
 }
 
-/// High paint elsewhere on the palette does not make its jar reach farther.
+/// High paint elsewhere on the palette does not extend its jar.
 #[test]
 fn the_jar_cleans_a_brush_that_is_in_it() {
     let left = |from: [f64; 2]| {
@@ -425,7 +424,7 @@ fn the_jar_cleans_a_brush_that_is_in_it() {
     assert!(left([60.0, 40.0]) > 0.3, "beside it");
 }
 
-/// Surfaces of a few cells, narrower than what the kernels go over at a time.
+/// Surfaces of a few cells, narrower than a run of the kernels.
 #[test]
 fn narrow_surfaces_are_painted_on() {
     for cells in [[1, 1], [1, 40], [2, 40], [40, 1], [3, 3]] {

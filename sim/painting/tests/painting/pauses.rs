@@ -13,34 +13,32 @@ use crate::studio::Drawing;
 
 const CELL_MM: f64 = 0.25;
 const SIZE_MM: [f64; 2] = [96.0, 32.0];
-/// Samples are so far apart, ms.
+/// Interval of samples, ms.
 const STEP_MS: u64 = 4;
 /// Length of the stroke, ms.
 const STROKE_MS: u64 = 1200;
 /// Pace of the hand, mm a ms.
 const PACE: f64 = 0.06;
 
-/// Columns of a stroke that went on differ from those of one that did not pause by less than this share: a head that
-/// lands straight down leaves .07 for a round and .14 for a flat.
+/// Tolerated difference of a continued stroke's columns from those without a pause, as a share: a head that lands
+/// straight down leaves .07 for a round and .14 for a flat.
 const SCAR: f64 = 0.05;
 
 /// The device after a pause.
 #[derive(Clone, Copy, PartialEq)]
 enum After {
-    /// The same.
     Same,
-    /// Another, for which the brush lands anew.
+    /// Another one, for which the brush lands again.
     Another,
 }
 
-/// Whether the hand moves in a pause.
+/// Motion of the hand in a pause.
 #[derive(Clone, Copy, PartialEq)]
 enum Hand {
     Moves,
     Rests,
 }
 
-/// A painted stroke.
 struct Stroke {
     /// Film of each cell, row after row, µm.
     cells: Vec<f64>,
@@ -50,7 +48,7 @@ struct Stroke {
     undone: usize,
 }
 
-/// Where the point of the pen is along the canvas after so much motion, mm.
+/// Place of the pen's point along the canvas after a motion, mm.
 fn along(moved_ms: u64) -> f64 {
     12.0 + PACE * moved_ms as f64
 }
@@ -65,11 +63,8 @@ fn stroke(kind: &str, pause: Range<u64>, hand: Hand, after: After) -> Stroke {
     let mut numbers = Vec::new();
     let times = (0..=STROKE_MS + rested).step_by(STEP_MS as usize);
     for ms in times.filter(|ms| !(pause.start + 1..pause.end).contains(ms)) {
-        let moved_ms = match ms > pause.start {
-            true => ms - rested,
-            false => ms,
-        };
-        // Against the lean of the pen a head that lands is bent the other way than a drawn one.
+        let moved_ms = if ms > pause.start { ms - rested } else { ms };
+        // A head that lands against the lean of the pen is bent opposite to a drawn one.
         let x = match hand {
             Hand::Moves => along(moved_ms),
             Hand::Rests => SIZE_MM[0] - along(moved_ms),
@@ -142,8 +137,8 @@ impl Stroke {
         }
     }
 
-    /// How far the film of its columns is from another's within 8 mm of a place, beside the film there: each
-    /// stroke has streaks of its own.
+    /// Difference of the film of its columns from another's within 8 mm of a place, relative to the film there: each
+    /// stroke has its own streaks.
     fn apart(&self, other: &Self, place: f64) -> f64 {
         let (mut apart, mut whole) = (0.0, 0.0);
         for (column, (a, b)) in self.columns().iter().zip(other.columns()).enumerate() {

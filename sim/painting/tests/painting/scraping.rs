@@ -67,7 +67,7 @@ fn a_part_is_scraped_alone() {
     assert!(part.apply(&mut painting).is_err(), "there is no more");
 }
 
-/// Paint stirred in a well would lie as half discs beside the new wells.
+/// Paint stirred in a well would form half discs beside the new wells.
 #[test]
 fn paint_of_wells_that_go_is_scraped_off_alone() {
     let mut painting = painting(&PaintingSetup::default());

@@ -1,4 +1,4 @@
-//! What the sequencer owes to clients and brushes.
+//! Duties of the sequencer toward clients and brushes.
 
 use maulstick_brush::BrushFile;
 use maulstick_painting::edits::Clean;
@@ -131,7 +131,7 @@ fn a_repeated_command_is_done_once_among_many_clients() {
     for other in 1000..2000 {
         sequencer.command(mark(other));
     }
-    // Of all clients it has the least number, which says nothing about its age.
+    // It has the least number of all clients, which is independent of its age.
     let clean = request(
         1,
         1,

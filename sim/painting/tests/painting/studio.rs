@@ -1,4 +1,4 @@
-//! Paintings and brushes, and what brushes do, for all tests.
+//! Paintings, brushes and their actions, for all tests.
 
 use maulstick_brush::{BrushFile, BrushModel};
 use maulstick_optics::PaintLibrary;
@@ -23,7 +23,7 @@ pub(crate) fn painting(setup: &PaintingSetup) -> Painting {
     Painting::new(setup, library).expect("a painting")
 }
 
-/// The library's round brush at a size, with so many strips.
+/// The library's round brush at a size, with a number of strips.
 pub(crate) fn round(size_mm: f64, strips: usize) -> BrushFile {
     let mut file = BrushFile::library("round").expect("round");
     file.strips.count = strips;
@@ -146,7 +146,7 @@ impl Drawing {
         }
     }
 
-    /// The pen at a place, m right of the middle, at so many ms; returns the numbers of the strokes it paints.
+    /// The pen at a place, m right of the middle, at a time, ms; returns the numbers of its strokes.
     pub(crate) fn sample(
         &mut self,
         ms: u64,

@@ -1,4 +1,4 @@
-//! However many threads share a step, and whatever size its brush, it paints the same bytes.
+//! Any number of threads paints the same bytes, with a brush of any size.
 
 use maulstick_impasto::Impasto;
 use maulstick_model::interface::{PaintModel, Step, StepReport};
@@ -19,7 +19,7 @@ struct Size {
     solves: usize,
 }
 
-/// Its footprint is done by one core or two.
+/// Its footprint needs one or two cores.
 const SMALL: Size = Size {
     mm: 5.0,
     strips: 48,
@@ -51,7 +51,7 @@ fn painted(size: Size, model: Option<Box<dyn PaintModel>>) -> Vec<WetPlane> {
     let solves = (0..=size.solves).map(|at| {
         let along = at as f64 / size.solves as f64;
         let place = [0.35 + 0.3 * along, 0.5 + 0.1 * along * along];
-        // The brush is lifted at the end, and what it left levels.
+        // The brush is lifted at the end, and its paint levels.
         let lifted = at == size.solves;
         let height = 0.45 + 2.0 * f64::from(u8::from(lifted));
         let place_mm = place.map(|share| share * size_mm);

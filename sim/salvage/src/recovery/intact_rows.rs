@@ -1,5 +1,5 @@
-//! Intact rows of a damaged painting: pages, loads and files are written to the new one at once, the others are few and
-//! stay in memory.
+//! Intact rows of a damaged painting: pages, loads and files are written to the new one at once, the few others stay in
+//! memory.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
@@ -107,7 +107,7 @@ impl IntactRows {
         }
     }
 
-    /// Takes a row; returns the number of rows written to the new painting.
+    /// Handles a row; returns the number of rows written to the new painting.
     fn take(&mut self, row: Row, age: RowAge, into: &Database) -> Result<u64, DocumentError> {
         let is_current = age == RowAge::Current;
         let row = match PaintingRow::read(row) {
@@ -151,7 +151,7 @@ impl IntactRows {
             Table::Journal => {
                 self.journal.entry(key).or_insert(row);
             }
-            // Deleted steps must not come back, displayed tiles are drawn again, and the record begins anew.
+            // Deleted steps must not return, displayed tiles are drawn again, and a new record begins.
             Table::Step | Table::Shown | Table::Beginning | Table::Record => {}
         }
         Ok(0)

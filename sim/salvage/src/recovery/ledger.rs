@@ -5,8 +5,8 @@ use maulstick_painting::ledger::Ledger;
 
 use super::inventory::{Inventory, TileIds};
 
-/// Balances a ledger for the paint that is there: missing paint counts as washed out by the cleaner, surplus paint as
-/// squeezed out of the tubes.
+/// Balances a ledger for the existing paint: missing paint counts as removed by the cleaner, surplus paint as from the
+/// tubes.
 pub(super) fn balance(ledger: &mut Ledger, there: &Counts) {
     let due = ledger.due();
     let off = |slot: usize| due[slot].saturating_sub_unsigned(there[slot]);

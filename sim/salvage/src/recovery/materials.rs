@@ -25,7 +25,7 @@ impl MaterialSources {
         Ok(Self(hashes.collect::<Result<_, _>>()?))
     }
 
-    /// True if the source of a ground or a tooth of this name is there.
+    /// True if the source of a ground or a tooth of this name is present.
     fn has(&self, name: &str) -> bool {
         let file = name
             .strip_prefix(IMAGE)
@@ -36,7 +36,7 @@ impl MaterialSources {
         }
     }
 
-    /// True if the sources of all these surfaces are there.
+    /// True if the sources of all these surfaces are present.
     pub(super) fn has_all(&self, materials: &[SurfaceMaterial]) -> bool {
         let mut names = materials
             .iter()
@@ -53,7 +53,7 @@ impl MaterialSources {
         names.collect()
     }
 
-    /// As [`replace_lost`](Self::replace_lost), in a version; true if any was lost.
+    /// [`replace_lost`](Self::replace_lost) in a version; true if any was lost.
     pub(super) fn replace_lost_in_version(&self, materials: &mut [SurfaceMaterial]) -> bool {
         let mut lost = false;
         for material in materials {

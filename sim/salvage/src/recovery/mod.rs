@@ -8,13 +8,13 @@
 //! - a dry layer whose paint is lost stays without paint; a lost one ends its stack;
 //! - a step that cannot be undone from the recovered tiles is dropped with all older ones;
 //! - a version with a lost tile is dropped;
-//! - a ground or a tooth whose picture is lost is replaced by the default;
+//! - a ground or a tooth with a lost picture is replaced by the default;
 //! - a brush whose load is lost is clean;
 //! - the journal is replayed up to its first gap;
-//! - the record of what was painted begins anew.
+//! - a new record begins.
 //!
-//! The ledger is balanced: lost paint counts as taken by the cleaner, paint that came back with an older tile as given by
-//! the tubes.
+//! The ledger is balanced: lost paint counts as removed by the cleaner, paint restored with an older tile as from the
+//! tubes.
 
 mod error;
 mod files;
@@ -78,8 +78,8 @@ impl Drop for TemporaryFile {
 ///
 /// # Errors
 /// [`DocumentError::Taken`] if there is a file at `to`, [`DocumentError::InUse`] if a program has the damaged painting
-/// open, [`SalvageError::Lost`] if the intact rows do not make a painting, or the system's error. There is no file at `to`
-/// then.
+/// open, [`SalvageError::Lost`] if the intact rows do not make a painting, or the system's error. On an error there is
+/// no file at `to`.
 pub fn recover(
     damaged: &Path,
     to: &Path,

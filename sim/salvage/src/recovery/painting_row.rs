@@ -20,7 +20,7 @@ pub(super) struct PaintingRow {
 #[derive(Debug)]
 pub(super) enum RowKind {
     Intact(PaintingRow),
-    /// Row with a wrong checksum or shape; its table and key, as far as they are known.
+    /// Row with a wrong checksum or shape; its table and key, where known.
     Damaged(Option<(Table, i64)>),
     /// Row of the schema.
     Schema,

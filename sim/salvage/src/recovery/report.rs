@@ -37,7 +37,7 @@ pub struct SalvageReport {
     pub pages: u64,
     /// True if the state of the painting besides its tiles is an older one.
     pub is_old: bool,
-    /// Format in the file, if this program does not know it: a newer one may hold more than was found.
+    /// Format of the file, if unknown: a newer one may contain more than was found.
     pub format: Option<i32>,
 }
 

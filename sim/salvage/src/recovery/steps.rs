@@ -65,7 +65,7 @@ pub(super) fn materials(scene: &Scene) -> Vec<SurfaceMaterial> {
 }
 
 impl Steps {
-    /// Takes the steps out of the intact rows; `snapshot` is the state of the painting.
+    /// Extracts the steps from the intact rows; `snapshot` is the state of the painting.
     pub(super) fn take(
         rows: &mut IntactRows,
         snapshot: &PaintingSnapshot,
@@ -102,7 +102,7 @@ impl Steps {
                 steps.undone.push((id, step))
             }
         }
-        // Steps that the state does not list were undone later, the newest step first.
+        // Steps missing in the state were undone later, the newest first.
         let last = snapshot.undone.len();
         steps
             .undone
@@ -193,7 +193,7 @@ impl StepRow {
         materials.all(|materials| sources.has_all(materials))
     }
 
-    /// True if all paint that it refers to is intact, and its change equals the paint that it booked.
+    /// True if all paint that it refers to is intact, and its change equals its bookings.
     fn balances(&self, inventory: &Inventory) -> bool {
         let mut change = [0i64; SLOTS];
         let mut add_change = |ends: [Option<Counts>; 2]| {

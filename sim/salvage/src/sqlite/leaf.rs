@@ -84,8 +84,8 @@ impl<B: AsRef<[u8]>> Leaf<B> {
         (end <= bytes.len().min(usable)).then_some(cell)
     }
 
-    /// Evidence in the page that it has just `usable` bytes: 0 if a cell is invalid, 2 if all are valid, 3 if they also
-    /// reach to the end, as the first cell written to a page does.
+    /// Evidence for `usable` bytes of the page: 0 if a cell is invalid, 2 if all are valid, 3 if they also reach to the
+    /// end, like the first cell written to a page.
     pub(super) fn score(&self, usable: usize) -> u64 {
         let mut reach = 0;
         for number in 0..self.cells {
@@ -106,7 +106,8 @@ impl<B: AsRef<[u8]>> Leaf<B> {
     }
 }
 
-/// Bytes of a record of `payload` bytes that are on the leaf itself, on a page with `usable` bytes: U, X, M and K of the file format's section 1.6.
+/// Local bytes, on the leaf itself, of a record of `payload` bytes, on a page with `usable` bytes: U, X, M and K of the
+/// file format's section 1.6.
 fn local_bytes(payload: u64, usable: usize) -> usize {
     let most = usable.saturating_sub(35);
     match usize::try_from(payload) {

@@ -1,8 +1,9 @@
 //! Rows of a damaged SQLite file, read without SQLite.
 //!
-//! Every page that is a leaf of a table gives its rows, whatever became of the pages above it: neither the header nor the
-//! schema nor an interior page is needed. A row does not name its table, so the caller distinguishes rows by their values.
-//! Rows of freed pages, which the database had already deleted, are read as well, and so may be older copies of a row.
+//! Every leaf page of a table gives its rows, whatever the state of the pages above it: neither the header nor the
+//! schema nor an interior page is needed. A row does not name its table, so the caller distinguishes rows by their
+//! values. Rows of freed pages, which the database had already deleted, are read as well, and perhaps older copies of a
+//! row.
 //!
 //! Values are as SQLite stores them: an `INTEGER PRIMARY KEY` is NULL among the values and is the rowid; a whole number in
 //! a REAL column may be an integer; columns that were added later are missing at the end. Text has to be UTF-8. Tables
@@ -44,7 +45,7 @@ pub struct Row {
     /// Copy of that page that was read.
     pub origin: Origin,
     /// True if SQLite would read this copy of the page too: the frame of the WAL where the page has a good one,
-    /// otherwise the main file; and the page is not free, as far as that is known ([`Scan::knows_free`]).
+    /// otherwise the main file; and the page is not free, where known ([`Scan::knows_free`]).
     pub current: bool,
 }
 
@@ -145,7 +146,7 @@ impl<F: Read + Seek> Scan<F> {
         self.store.is_beyond(page) || self.free.as_ref().is_some_and(|free| free.contains(&page))
     }
 
-    /// True if the file begins as a database does.
+    /// True if the file has a database's header.
     pub fn has_header(&self) -> bool {
         matches!(self.page_size().from, PageSizeFrom::Header)
     }

@@ -31,7 +31,7 @@ impl PageSize {
     /// Page size of a main file of `length` bytes that starts with `header`; `wal_page_size` is that of an intact WAL
     /// header.
     ///
-    /// A header that looks valid is ignored if leaf pages of another size parse far better: with twice the true size half
+    /// A valid-looking header is ignored if leaf pages of another size parse far better: with twice the true size half
     /// of them still do.
     pub(super) fn find<F: Read + Seek>(
         file: &mut F,
@@ -64,9 +64,9 @@ impl PageSize {
 pub enum PageSizeFrom {
     /// The main file's header says so.
     Header,
-    /// That header is damaged or wrong; the WAL's, which has a checksum, gives the size.
+    /// The header is damaged or wrong; the WAL's, which has a checksum, gives the size.
     Wal,
-    /// It is the one with which most pages parse.
+    /// The size with which most pages parse.
     Guess,
 }
 

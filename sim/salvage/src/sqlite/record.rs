@@ -3,15 +3,15 @@
 /// Value of a row.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// NULL.
+    /// SQL NULL.
     Null,
-    /// A whole number.
+    /// Integer of 0 to 8 bytes.
     Int(i64),
-    /// A floating-point number.
+    /// IEEE 754 number of 8 bytes.
     Real(f64),
     /// UTF-8 text; a row with other text counts as damaged.
     Text(String),
-    /// Bytes.
+    /// Bytes without an encoding.
     Blob(Vec<u8>),
 }
 

@@ -10,9 +10,9 @@ use super::wal::{Frames, Header, WalState};
 /// Copy of a page that a row was read from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Origin {
-    /// The main file.
+    /// The database itself, not its journal.
     Main,
-    /// A committed frame of the WAL, with nothing damaged before it.
+    /// A committed frame of the WAL, without damage before it.
     Wal,
     /// A frame of the WAL with a damaged one before it or in its transaction. Its own checksum matches, but SQLite would
     /// not read it, and its transaction may never have been acknowledged.
@@ -114,7 +114,7 @@ impl<F: Read + Seek> Store<F> {
         }
     }
 
-    /// Copies of pages that a walk over the current copies of the main file's pages does not reach.
+    /// Copies of pages outside the trees of the main file's current pages.
     pub(super) fn other_copies(&self) -> Vec<PageCopy> {
         let pages = self.main_pages();
         let beyond = pages.saturating_add(1)..;
@@ -217,8 +217,8 @@ impl<'a, F: Read + Seek> Payload<'a, F> {
         Some(taken)
     }
 
-    /// Goes to the next overflow page. A chain has exactly the pages that its record needs, and the link of the last one
-    /// is 0: so a chain with a loop is rejected, and none is followed beyond the length of the record.
+    /// Moves to the next overflow page. A chain has exactly the pages that its record needs, and the link of the last
+    /// one is 0: so a chain with a loop is rejected, and none is followed beyond the length of the record.
     fn next_page(&mut self) -> Option<()> {
         if self.next < 2 || self.beyond == 0 {
             return None;

@@ -26,8 +26,8 @@ pub struct WalState {
     pub frames_good: u64,
     /// Committed frames with a matching checksum behind a damaged one.
     pub frames_past_damage: u64,
-    /// True if bytes of this WAL are damaged, as far as that can be detected: a power cut during a commit looks the same,
-    /// and a damaged end looks like an unfinished commit.
+    /// True if bytes of this WAL are damaged, as far as detectable: a power cut during a commit looks the same, and a
+    /// damaged end looks like an unfinished commit.
     pub damaged: bool,
 }
 
@@ -61,7 +61,7 @@ impl Header {
 /// Positions of the pages in a WAL: offsets of a page's bytes, of its latest committed frame.
 #[derive(Debug, Default)]
 pub(super) struct Frames {
-    /// Frames with nothing damaged before them.
+    /// Frames without damage before them.
     pub(super) good: BTreeMap<u32, u64>,
     /// Frames behind a damaged one.
     pub(super) past_damage: BTreeMap<u32, u64>,
@@ -74,10 +74,10 @@ pub(super) struct Frames {
 impl Frames {
     /// Reads a WAL of `length` bytes, with pages of `page_size` bytes.
     ///
-    /// The checksum of a frame continues that of the previous one, which is stored: so frames behind a damaged one can be
+    /// The checksum of a frame continues the stored one of the previous frame, so frames after a damaged one can be
     /// checked, too. They count as past damage together with uncommitted ones before it. Without a header the salts are
-    /// those of the first two neighbours of which the second is intact, since frames of earlier runs of the log are only
-    /// behind those of the latest.
+    /// those of the first two neighbours of which the second is intact, since frames of earlier runs of the log are
+    /// only behind those of the latest.
     pub(super) fn read<F: Read + Seek>(
         wal: &mut F,
         length: u64,

@@ -1,4 +1,4 @@
-//! A database with rows of all kinds, and, from SQLite itself, the pages that each row stands on.
+//! A database with rows of all kinds, and, from SQLite itself, the pages of each row.
 
 #![allow(
     dead_code,
@@ -17,7 +17,7 @@ use tempfile::TempDir;
 /// The two tables: rows of any length, and short ones.
 pub(crate) const TABLES: [&str; 2] = ["tiles", "notes"];
 
-/// What SQLite was told to store under a row's tag.
+/// Values to store under a row's tag.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Stored {
     pub(crate) rowid: i64,
@@ -39,7 +39,7 @@ pub(crate) struct Files {
     pub(crate) wal: Option<Vec<u8>>,
 }
 
-/// The tag that tells rows apart; nothing for the schema's own.
+/// Tag that distinguishes rows; `None` for the schema's own.
 pub(crate) fn tag(row: &Row) -> Option<&str> {
     match row.values.as_slice() {
         [Value::Null, Value::Text(tag), _, _, Value::Blob(_)] => Some(tag),
@@ -47,7 +47,7 @@ pub(crate) fn tag(row: &Row) -> Option<&str> {
     }
 }
 
-/// The tags of `wanted` of which no copy came out just as it was stored.
+/// The tags of `wanted` without an exact copy.
 pub(crate) fn missing(
     files: &Files,
     stored: &BTreeMap<String, Stored>,
@@ -58,7 +58,7 @@ pub(crate) fn missing(
     wanted.filter(|tag| !found.contains(tag)).collect()
 }
 
-/// The row's tag, if it is just as it was stored.
+/// The row's tag, if it is exactly as stored.
 pub(crate) fn right(row: &Row, stored: &BTreeMap<String, Stored>) -> Option<String> {
     let tag = tag(row)?;
     let stored = stored.get(tag)?;

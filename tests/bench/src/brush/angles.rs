@@ -1,10 +1,9 @@
 //! The energy of a spine as a function of the angles of its joints, for a general optimiser.
 //!
-//! Unknowns are θ and φ of each joint, R_j = R_{j−1}·R_y(φ_j)·R_x(θ_j) (Baxter 2004, eq. 3.10). An
-//! angle about the axis a turns all segments from its joint on: ∂d_k/∂α = a × d_k, so that
-//! ∂E/∂α = a · Σ_{k≥j} d_k × ∂E/∂d_k, and the height of the end p_i changes by (a × (p_i − p_{j−1}))·z.
-//! Energies are in units of the stiffest spring and heights in units of the length, so that all
-//! numbers are about 1.
+//! Unknowns are θ and φ of each joint, R_j = R_{j−1}·R_y(φ_j)·R_x(θ_j) (Baxter 2004, eq. 3.10). An angle about the axis
+//! a turns all segments from its joint on: ∂d_k/∂α = a × d_k, so that ∂E/∂α = a · Σ_{k≥j} d_k × ∂E/∂d_k, and the height
+//! of the end p_i changes by (a × (p_i − p_{j−1}))·z. Energies are in units of the stiffest spring and heights in units
+//! of the length, so that all numbers are of order 1.
 
 use std::cell::RefCell;
 
@@ -14,10 +13,10 @@ use maulstick_brush::{Spine, SpineShape};
 use maulstick_num::sin_cos;
 use slsqp::{Func, StopTols};
 
-/// Heights that differ from 0 by less count as 0, in lengths: the optimiser knows no tolerance for
-/// constraints, and where rounding leaves one broken it would not stop.
+/// Height below which a violated constraint counts as met, in lengths: the optimiser has no tolerance for constraints,
+/// and would not stop at one violated by rounding.
 const LEVEL: f64 = 1e-10;
-/// Evaluations of the energy at most.
+/// Greatest number of evaluations of the energy.
 const EVALUATIONS: usize = 200;
 /// Relative change of the energy at which the optimiser stops.
 const FTOL: f64 = 1e-10;
@@ -30,7 +29,7 @@ pub(crate) struct Angles<'a> {
     at: RefCell<At<'a>>,
 }
 
-/// What is known at the newest angles.
+/// State at the newest angles.
 struct At<'a> {
     solver: &'a mut Solver,
     angles: Vec<f64>,
@@ -46,7 +45,7 @@ struct At<'a> {
 pub(crate) struct Minimum {
     /// In units of the stiffest spring.
     pub(crate) energy: f64,
-    /// How deep the deepest joint lies, in lengths.
+    /// Depth of the deepest joint, in lengths.
     pub(crate) penetration: f64,
 }
 
@@ -94,7 +93,7 @@ impl<'a> Angles<'a> {
         at.energy
     }
 
-    /// How deep the end of a segment lies below the surface, in lengths, and its derivatives.
+    /// Depth of a segment's end below the surface, in lengths, and its derivatives.
     pub(crate) fn depth(&self, joint: usize, angles: &[f64], gradient: Option<&mut [f64]>) -> f64 {
         self.go(angles);
         let (at, length) = (self.at.borrow(), self.spine.length_m());
@@ -148,7 +147,7 @@ impl<'a> Angles<'a> {
         }
     }
 
-    /// Lets slsqp minimise from `start`.
+    /// Runs slsqp from `start`.
     pub(crate) fn minimise(&self, start: &[f64]) -> Minimum {
         // The crate calls constraints as if they were of the objective's type: give both one type.
         let energy = |x: &[f64], g: Option<&mut [f64]>, _: &mut ()| self.energy(x, g);

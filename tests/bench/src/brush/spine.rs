@@ -1,4 +1,4 @@
-//! One spine on its stroke: our solver beside slsqp, pose by pose.
+//! One spine on its stroke: our solver compared with slsqp, pose by pose.
 //!
 //! Both minimise the same smoothed energy with analytic gradients, slsqp over θ and φ with the heights of the joints as
 //! constraints, and begin each pose from our solution of the one before. The excess of our energy over slsqp's is taken
@@ -20,7 +20,7 @@ pub(crate) const LENGTH_M: f64 = 0.025;
 const EI: f64 = 2.7e-5;
 /// Times that each solves each pose, in turn.
 const TURNS: usize = 3;
-/// The peer's minimum counts if it lies no deeper, in lengths.
+/// Greatest depth of a valid minimum of the peer, in lengths.
 const FEASIBLE: f64 = 1e-9;
 /// Spines of the throughput row.
 const CROWD: usize = 128;
@@ -109,8 +109,8 @@ pub(crate) fn beside_slsqp(report: &mut Report, joints: usize) -> Result<(), Use
     Ok(())
 }
 
-/// How many three-joint spines one core keeps at 1 kHz: each on its own stroke, one after the other
-/// in one thread, without batching.
+/// Number of three-joint spines that one core sustains at 1 kHz: each on its own stroke, one after the other in one
+/// thread, without batching.
 pub(crate) fn throughput(report: &mut Report) {
     let (spine, settings) = (spine(3), settings());
     let strokes: Vec<_> = (0..CROWD)

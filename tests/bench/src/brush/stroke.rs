@@ -15,7 +15,7 @@ const STEP_S: f64 = 1e-3;
 struct Sway([[f64; 3]; 3]);
 
 impl Sway {
-    /// Up to `most` either way, at frequencies up to `fastest` (Hz).
+    /// Random motion of up to `most` either way, at frequencies up to `fastest` (Hz).
     fn new(random: &mut Random, most: f64, fastest: f64) -> Self {
         Self([1.0, 0.6, 0.3].map(|share| {
             let amplitude = most / 3.0 * (0.5 + random.unit());

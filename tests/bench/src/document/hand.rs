@@ -28,7 +28,7 @@ const PAINTS: [&str; 4] = [
     "Yellow Ochre",
     "Pyrrole Red=0.5,Bone Black=0.5",
 ];
-/// Way between two states, m: as a quick hand goes in 8 ms.
+/// Path between two states, m: of a quick hand in 8 ms.
 const STATE_M: f64 = 2e-3;
 
 /// A painting in a document with the hand over it.
@@ -43,7 +43,7 @@ pub(super) struct Easel {
     begun: Instant,
 }
 
-/// What painting took.
+/// Duration of painting.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Took {
     /// Steps of the paint model.
@@ -55,7 +55,7 @@ pub(super) struct Took {
 }
 
 impl Easel {
-    /// A canvas of so many cells either way, in a new file.
+    /// A canvas of `cells` cells either way, in a new file.
     pub(super) fn new(
         path: &Path,
         cells: u32,
@@ -151,7 +151,7 @@ impl Easel {
         Ok(())
     }
 
-    /// Hands over to the document what is due.
+    /// Hands over the records due to the document.
     pub(super) fn keep(&mut self) {
         let now_ns = self.begun.elapsed().as_nanos() as u64;
         self.sequencer.drain_journal();

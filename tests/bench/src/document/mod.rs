@@ -3,10 +3,10 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`hand`] | a hand that paints strokes anywhere, from a seed |
-//! | [`vast`] | a canvas larger than memory beside a small one |
-//! | [`undoing`] | ten thousand steps taken back |
-//! | [`opening`] | how soon a painting is seen and painted on |
-//! | [`packing`] | a packed painting beside an OpenEXR file |
+//! | [`vast`] | a canvas larger than memory, compared with a small one |
+//! | [`undoing`] | ten thousand steps undone |
+//! | [`opening`] | time until a painting is displayed and can be painted on |
+//! | [`packing`] | a packed painting compared with an OpenEXR file |
 
 mod hand;
 mod opening;
@@ -26,7 +26,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     packing::run(report)
 }
 
-/// What went wrong, as the user sees it.
+/// The error in the user's words.
 fn fault(error: impl ToString) -> UserError {
     UserError::failure(error.to_string())
 }

@@ -1,4 +1,4 @@
-//! How soon a painting is seen, and painted on.
+//! Time until a painting is displayed, and can be painted on.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -25,7 +25,7 @@ const STROKE_M: f64 = 0.06;
 const LEVEL: u32 = 2;
 const ROUNDS: usize = 5;
 
-/// Until the picture is there, and until the paint node takes the first stroke, ms.
+/// Time to the picture, and to the paint node's first stroke, ms.
 fn once(path: &std::path::Path) -> Result<[f64; 2], UserError> {
     let begun = Instant::now();
     let ms = |since: Instant| 1e3 * since.elapsed().as_secs_f64();

@@ -10,7 +10,7 @@ use maulstick_painting::edits::Undo;
 
 const CELLS: u32 = 4096;
 const STEPS: usize = 10_000;
-/// A dab.
+/// Length of a dab, m.
 const STROKE_M: f64 = 4e-3;
 
 pub(super) fn run(report: &mut Report) -> Result<(), UserError> {

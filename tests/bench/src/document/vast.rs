@@ -85,7 +85,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     again(report, &folder.path().join("vast.maul"))
 }
 
-/// The vast canvas opened again, with little memory: what is painted on comes from the file.
+/// The vast canvas opened again, with little memory: the tiles painted on come from the file.
 fn again(report: &mut Report, path: &std::path::Path) -> Result<(), UserError> {
     let mut easel = Easel::again(path, 64 << 20)?;
     let mut took = Took::default();

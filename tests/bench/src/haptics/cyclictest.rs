@@ -1,4 +1,4 @@
-//! The peer: cyclictest of rt-tests, which sleeps to absolute deadlines and does nothing else.
+//! The peer: cyclictest of rt-tests, which sleeps to absolute deadlines alone.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -10,13 +10,12 @@ use serde_json::Value;
 use super::fault;
 use super::histogram::Histogram;
 
-/// Lateness that it counts, µs; what is later is beyond all quantiles that are reported.
+/// Greatest counted lateness, µs, beyond all reported quantiles.
 const MOST_US: u64 = 100_000;
 
-/// Runs it for so many ticks, a millisecond apart, with memory locked and SCHED_FIFO, priority 80.
+/// Runs it for `ticks` ticks, a millisecond apart, with memory locked and SCHED_FIFO, priority 80.
 ///
-/// # Errors
-/// A [`UserError`] where it is not installed or fails.
+/// # Errors A [`UserError`] where it is not installed or fails.
 pub(super) fn run(place: &Path, ticks: u64) -> Result<Histogram, UserError> {
     let json = place.join("cyclictest.json");
     let mut command = Command::new("cyclictest");

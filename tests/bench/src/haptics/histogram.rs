@@ -1,4 +1,4 @@
-//! How late ticks were, in bins of a microsecond: those of the peer, and so ours too.
+//! Lateness of ticks, in bins of a microsecond like the peer's.
 
 use std::collections::BTreeMap;
 
@@ -14,12 +14,12 @@ impl Histogram {
         *self.counts.entry(us).or_default() += ticks;
     }
 
-    /// How many ticks.
+    /// Number of ticks.
     pub(super) fn ticks(&self) -> u64 {
         self.counts.values().sum()
     }
 
-    /// Lateness that a share of the ticks does not exceed, µs: the ticks of a bin lie evenly in it.
+    /// Lateness not exceeded by a share of the ticks, µs, with the ticks spread evenly over their bin.
     pub(super) fn quantile(&self, share: f64) -> f64 {
         let wanted = share * self.ticks() as f64;
         let mut before = 0.0;

@@ -1,10 +1,10 @@
-//! How late our servo wakes beside cyclictest, in turns, under the load of a rig that paints.
+//! Wake-up lateness of our servo compared with cyclictest, in turns, under the load of a painting rig.
 //!
-//! Both sleep to absolute deadlines a millisecond apart on a thread of SCHED_FIFO, priority 80, with
-//! memory locked, and measure from the deadline to the first instruction after it. Ours is the whole
-//! servo over a simulated device; what it does in a tick delays no wake-up, as deadlines are absolute. Both keep the
-//! processor from sleeping deeply (`/dev/cpu_dma_latency`): without that our ratio is 1.7. Beyond the 90th percentile
-//! both show what the host of a virtual machine takes, so no tail is judged.
+//! Both sleep to absolute deadlines a millisecond apart on a thread of SCHED_FIFO, priority 80, with memory locked, and
+//! measure from the deadline to the first instruction after it. Ours is the whole servo over a simulated device; its
+//! work in a tick delays no wake-up, as deadlines are absolute. Both keep the processor from sleeping deeply
+//! (`/dev/cpu_dma_latency`): without that our ratio is 1.7. Beyond the 90th percentile both show the effect of a
+//! virtual machine's host, so no tail is judged.
 
 use std::time::{Duration, Instant};
 
@@ -25,19 +25,19 @@ use crate::report::Report;
 const PAIRS: usize = 10;
 /// Ticks of each of a pair: 4 s.
 const TICKS: u64 = 4000;
-/// Ticks from which nothing came for so long have stopped.
+/// Silence after which ticks count as stopped.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// How our servo was scheduled.
+/// Scheduling of our servo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Scheduling {
     /// Real time, priority 80.
     Fifo,
-    /// As every other thread, where real time is not permitted.
+    /// Like every other thread, where real time is not permitted.
     Other,
 }
 
-/// Measures and reports. Without the peer there are our own numbers, and it is said what is missing.
+/// Measures and reports. Without the peer only our own numbers are reported, with a note.
 pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     let place = tempfile::tempdir().map_err(fault)?;
     let (_, scheduling) = ours(10)?;
@@ -60,9 +60,10 @@ pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     let (start, before_s) = (Instant::now(), load.seconds());
     for _ in 0..PAIRS {
         let (ours, _) = ours(TICKS)?;
-        let theirs = match peer {
-            true => Some(cyclictest::run(place.path(), TICKS)?),
-            false => None,
+        let theirs = if peer {
+            Some(cyclictest::run(place.path(), TICKS)?)
+        } else {
+            None
         };
         load.check()?;
         pairs.push((ours, theirs));
@@ -75,22 +76,24 @@ pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
             (ours.quantile(share), theirs)
         };
         let values: Vec<(f64, f64)> = pairs.iter().map(of).collect();
-        match peer {
-            true => report.paired(name, "µs", "cyclictest", &values),
-            false => report.median(name, "µs", values.iter().map(|pair| pair.0).collect()),
+        if peer {
+            report.paired(name, "µs", "cyclictest", &values)
+        } else {
+            report.median(name, "µs", values.iter().map(|pair| pair.0).collect())
         }
     }
     Ok(())
 }
 
-/// How late so many ticks of our servo are, and how it was scheduled.
+/// Lateness of `ticks` ticks of our servo, and its scheduling.
 fn ours(ticks: u64) -> Result<(Histogram, Scheduling), UserError> {
     let device = MountedDevice::new(Box::new(Simulated::at_rest()), Registration::IDENTITY, 0);
     let mut servo =
         ServoThread::start(device, Box::new(MonotonicClock), Limits::default()).map_err(fault)?;
-    let scheduling = match servo.warnings.iter().any(|what| what.contains("real-time")) {
-        true => Scheduling::Other,
-        false => Scheduling::Fifo,
+    let scheduling = if servo.warnings.iter().any(|what| what.contains("real-time")) {
+        Scheduling::Other
+    } else {
+        Scheduling::Fifo
     };
     let mut histogram = Histogram::default();
     let mut heard = Instant::now();

@@ -1,4 +1,4 @@
-//! A rig without a window that paints as fast as it can, beside what is measured.
+//! A rig without a window that paints as fast as it can, as load.
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -19,10 +19,10 @@ use crate::running::{joined, maulstick};
 const RATE_HZ: u64 = 250;
 /// Length of its take, s.
 const LENGTH_S: u64 = 400;
-/// A hand goes to and fro over 20 cm so often a second: at 1 m/s, a way of 4,000 cells a second, the
-/// brush and the paint have a core's work each.
+/// Frequency of a hand that moves to and fro over 20 cm, Hz: at 1 m/s, 4,000 cells a second, the brush and the paint
+/// need a core each.
 const TURNS_HZ: f64 = 2.5;
-/// How long a rig may take to begin to paint.
+/// Longest time for a rig to begin to paint.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The rig; it ends with this value.
@@ -90,10 +90,9 @@ impl Load {
         ours.map(|(_, seconds)| seconds).sum()
     }
 
-    /// Whether it is still there.
+    /// Checks that it is still running.
     ///
-    /// # Errors
-    /// A [`UserError`] where it has ended: what was measured then was measured without load.
+    /// # Errors A [`UserError`] where it has ended: later measurements lacked the load.
     pub(super) fn check(&mut self) -> Result<(), UserError> {
         match self.0.try_wait().map_err(fault)? {
             None => Ok(()),
@@ -102,10 +101,10 @@ impl Load {
     }
 }
 
-/// Parts of a second in which Linux tells of processor time (`USER_HZ`).
+/// Unit of processor time in Linux, per second (`USER_HZ`).
 const USER_HZ: f64 = 100.0;
 
-/// Whose child a process is, and the processor time that it has had, s; by its line in `/proc`.
+/// Parent of a process, and its processor time, s, from its line in `/proc`.
 fn parent_and_time(stat: &str) -> Option<(u32, f64)> {
     // Its name, in parentheses, may hold anything.
     let (_, rest) = stat.rsplit_once(") ")?;
@@ -125,7 +124,7 @@ fn to_and_fro() -> Take {
             sample: StylusSample {
                 senses: axes::POSITION | axes::PRESSURE | axes::TILT,
                 pose: StylusPose::Contact {
-                    // Strokes beside each other, so that each meets what others have left.
+                    // Adjacent strokes, each of which meets the paint of others.
                     point_m: [x, 0.02 * (turns * 0.07).fract(), 0.0],
                     tilt_rad: DEFAULT_TILT_RAD,
                     twist_rad: 0.0,

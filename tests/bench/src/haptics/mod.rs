@@ -1,12 +1,12 @@
-//! The servo: how late it wakes beside the peer under the load of a rig, what a tick takes, and how
-//! stable it is.
+//! The servo: its wake-up lateness compared with the peer under the load of a rig, the time of a tick, and its
+//! stability.
 //!
 //! | module | rows |
 //! | --- | --- |
-//! | [`stability`] | `grid`: the worst of the stability grid, and the fingertips that a sent force shakes |
-//! | [`tick`] | `tick`: time of the processor that a tick takes, a hand in contact |
-//! | [`lateness`] | `lateness`: from a tick's deadline to its first instruction, beside cyclictest |
-//! | [`load`] | a rig that paints meanwhile |
+//! | [`stability`] | `grid`: the worst of the stability grid, and the fingertips shaken by a force from afar |
+//! | [`tick`] | `tick`: processor time of a tick with a hand in contact |
+//! | [`lateness`] | `lateness`: from a tick's deadline to its first instruction, compared with cyclictest |
+//! | [`load`] | a rig that paints as load |
 //! | [`cyclictest`] | the peer |
 //! | [`histogram`] | shares of late ticks, for both alike |
 

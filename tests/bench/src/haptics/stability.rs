@@ -23,7 +23,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     Ok(())
 }
 
-/// How runs went, in their order, found by a thread a core.
+/// Outcomes of the runs, in order, computed by a thread a core.
 fn went(runs: &[Run]) -> Result<Vec<(Run, Outcome)>, UserError> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let some = |runs: &[Run]| -> Result<Vec<(Run, Outcome)>, &'static str> {

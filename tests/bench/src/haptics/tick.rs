@@ -1,6 +1,5 @@
-//! What a tick takes of the processor: read, take in, step, write, tell; on the servo's own thread and
-//! clock, over the simulated device, a hand that presses and slides, models at 250 Hz with the Hermite
-//! law, friction and grain.
+//! Processor time of a tick: read, drain, step, write, publish; on the servo's own thread and clock, over the simulated
+//! device, a hand that presses and slides, models at 250 Hz with the Hermite law, friction and grain.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -26,7 +25,7 @@ use super::fault;
 use crate::report::{Report, quantile, sorted};
 use crate::thread_cpu::thread_cpu;
 
-/// Ticks that are measured, and those before them, in which the force comes up.
+/// Number of measured ticks, and of those before them, in which the force rises.
 const TICKS: usize = 5000;
 const WARM_UP: usize = 1000;
 /// Time between two models: 250 Hz.
@@ -35,7 +34,7 @@ const MODEL_PERIOD: Duration = Duration::from_millis(4);
 const DEPTH_SHARE: f64 = 0.5;
 /// Least share of the measured ticks in which the hand feels something.
 const IN_CONTACT: f64 = 0.9;
-/// Ticks from which nothing came for so long have stopped.
+/// Silence after which ticks count as stopped.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// The servo's own clock; notes the processor time of each tick.
@@ -50,7 +49,7 @@ impl ServoClock for Timed {
         MonotonicClock.run(&mut |late_ns| {
             let before = thread_cpu();
             let flow = tick(late_ns);
-            // What does not fit comes after those that are measured.
+            // Ticks beyond the capacity come after the measured ones.
             spent.push(thread_cpu().saturating_sub(before)).ok();
             flow
         })
@@ -105,7 +104,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     Ok(())
 }
 
-/// A hand that goes round, pressed in, for as long as is measured and twice that.
+/// A hand that circles, pressed in, for twice the measured time.
 fn sliding() -> Take {
     let samples = (0..3 * (TICKS + WARM_UP) as u64).map(|number| {
         let turn = 1e-3 * number as f64 * std::f64::consts::TAU;
@@ -131,7 +130,7 @@ fn sliding() -> Take {
     }
 }
 
-/// What the brush node would send for this brush on a canvas.
+/// The model that the brush node would send for this brush on a canvas.
 fn model(brush: &BrushFile) -> ContactModel {
     let law = ForceLaw::Hermite {
         knots: tuples(brush),

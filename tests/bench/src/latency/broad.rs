@@ -22,9 +22,9 @@ use crate::running::{Running, fault};
 
 /// Width of the brush, mm.
 const BRUSH_MM: f64 = 30.0;
-/// Cells, mm.
+/// Side of a cell, mm.
 const CELL_MM: &str = "0.125";
-/// Target: the 95th percentile of the latencies is at most so many medians.
+/// Target: the 95th percentile of the latencies in medians.
 const MOST_BY_P50: f64 = 2.0;
 
 /// Samples a second of the pen.
@@ -33,11 +33,10 @@ const RATE_HZ: u64 = 250;
 const SPEED_M_PER_S: f64 = 0.5;
 /// Length of a stroke, m.
 const STROKE_M: f64 = 0.2;
-/// Number of strokes.
 const STROKES: u64 = 24;
 /// Samples between two strokes, of a pen that hovers.
 const LIFT_SAMPLES: u64 = 50;
-/// The hand begins so long after it is made, ns: by then its first sample is ready to be sent.
+/// Delay of the hand after its creation, ns: by then its first sample is ready to be sent.
 const LEAD_NS: u64 = 100_000_000;
 
 /// Measures, and reports beside the median of the usual brush.
@@ -84,7 +83,7 @@ pub(crate) fn run(report: &mut Report, place: &Path, usual: f64) -> Result<(), U
 
 /// Samples of a stroke.
 const STROKE_SAMPLES: u64 = (STROKE_M / SPEED_M_PER_S * RATE_HZ as f64) as u64;
-/// All samples.
+/// Number of all samples.
 const SAMPLES: u64 = STROKES * (STROKE_SAMPLES + LIFT_SAMPLES);
 
 /// Time of a sample after the first, ns.
@@ -111,7 +110,7 @@ fn sample(number: u64) -> StylusSample {
     }
 }
 
-/// A pen that sends its samples when they are due, whoever listens.
+/// A pen that sends its samples when they are due, with or without listeners.
 fn hand(bus: Arc<ZenohBus>, begin_ns: u64) -> JoinHandle<Result<(), BusError>> {
     thread::spawn(move || {
         let (topics, wake) = (Topics::new("latency"), Wake::new());

@@ -1,5 +1,5 @@
-//! From a stylus sample to the first frame that holds it, for a puller without a window that asks
-//! again at once, and in a window; a take is played at rate 1.
+//! Latency from a stylus sample to the first frame with it, for a puller without a window that asks again at once, and
+//! in a window; a take is played at rate 1.
 
 mod broad;
 mod window;
@@ -23,7 +23,7 @@ use crate::running::{Running, fault, joined, maulstick};
 
 /// Options of the usual brush on the usual cells.
 pub(crate) const USUAL: [&str; 2] = ["--cell-mm", "0.25"];
-/// What is not in a frame this long after the hand has ended is lost.
+/// Time after the hand's end after which a missing sample is lost.
 pub(crate) const GRACE: Duration = Duration::from_secs(60);
 
 /// A rig called `latency` in the folder `place` with black on its brush, with these options.
@@ -45,7 +45,7 @@ pub(crate) fn playing(place: &Path, take: &Path, options: &[&str]) -> Result<Com
     Ok(command)
 }
 
-/// A bus of that rig, once it is there, for a program called `name`.
+/// A bus of that rig, once it runs, for a program called `name`.
 pub(crate) fn joined_as(place: &Path, name: &str) -> Result<ZenohBus, UserError> {
     let path = place.join("maulstick/latency");
     let (folder, info) = joined(&path, Instant::now() + Duration::from_secs(30))?;
@@ -135,7 +135,7 @@ pub(crate) fn frame(
 pub(crate) struct Puller<'a> {
     bus: &'a ZenohBus,
     states: Receiver<BrushState>,
-    /// Times of the samples of solves that no frame holds yet, by the state that told of them, ns.
+    /// Times of the samples of solves that are in no frame yet, by their state, ns.
     waiting: BTreeMap<u64, Vec<u64>>,
     latencies: Latencies,
 }
@@ -157,7 +157,7 @@ impl<'a> Puller<'a> {
         })
     }
 
-    /// Asks for frames until `ends` says so, which is given the time of the newest sample that a frame holds, ns.
+    /// Pulls frames until `ends` is true for the time of the newest sample in a frame, ns.
     pub(crate) fn pull(
         mut self,
         give_up: Instant,
@@ -171,7 +171,7 @@ impl<'a> Puller<'a> {
             let now_ns = self.bus.now_ns();
             newest = (reply.version, reply.epoch, reply.look);
             self.latencies.frames += usize::from(!reply.tiles.is_empty());
-            self.take_in();
+            self.drain_inputs();
             let Some(held) = reply.holds.first() else {
                 continue;
             };
@@ -187,8 +187,8 @@ impl<'a> Puller<'a> {
         Ok(self.latencies)
     }
 
-    /// Notes the solves of the states.
-    fn take_in(&mut self) {
+    /// Drains the states, and records their solves.
+    fn drain_inputs(&mut self) {
         while let Some(state) = self.states.try_recv() {
             let solves = state.message.solves.iter().filter(|solve| solve.stroke > 0);
             for solve in solves {

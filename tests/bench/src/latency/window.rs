@@ -20,7 +20,7 @@ use crate::running::{Running, display, fault};
 
 /// Width and height of the window, pixels.
 const SIZE: [u32; 2] = [1280, 720];
-/// What is not in a frame this long after the take's end is lost.
+/// Time after the take's end after which a missing sample is lost.
 const GRACE: Duration = Duration::from_secs(2);
 /// A pause between two depositing samples that is longer is no painting, ns.
 const PAUSE_NS: u64 = 500_000_000;
@@ -51,7 +51,7 @@ pub(crate) fn run(
     Ok(())
 }
 
-/// What was seen of a window.
+/// Observations of a window.
 #[derive(Default)]
 struct Seen {
     /// Times of depositing samples that are in no frame yet, by the number of their state, ns.
@@ -88,7 +88,7 @@ fn watch(bus: &ZenohBus, seconds: f64, rig: &mut Running) -> Result<Seen, UserEr
             }
         }
         while let Some(frame) = frames.try_recv() {
-            seen.take_in(frame.header.event_ns, &frame.message);
+            seen.record(frame.header.event_ns, &frame.message);
         }
         let ends = std::iter::from_fn(|| takes.try_recv()).any(|take| take.message.end.is_some());
         if ends && !is_over {
@@ -96,17 +96,18 @@ fn watch(bus: &ZenohBus, seconds: f64, rig: &mut Running) -> Result<Seen, UserEr
             give_up = Instant::now() + GRACE;
         }
     }
-    match is_over && !seen.frames.is_empty() {
-        true => Ok(seen),
-        false => Err(
+    if is_over && !seen.frames.is_empty() {
+        Ok(seen)
+    } else {
+        Err(
             UserError::failure("the window showed nothing, or the take did not end")
                 .help("`maulstick up --play` on this display says why"),
-        ),
+        )
     }
 }
 
 impl Seen {
-    fn take_in(&mut self, completed_ns: u64, frame: &Presented) {
+    fn record(&mut self, completed_ns: u64, frame: &Presented) {
         self.frames.push(completed_ns);
         self.draw_ms.push(frame.draw_ns as f64 * 1e-6);
         let Some(held) = frame.holds.first() else {
@@ -120,7 +121,7 @@ impl Seen {
         }
     }
 
-    /// Times between frames while somebody paints, ms.
+    /// Intervals between frames during painting, ms.
     fn periods(&self) -> Vec<f64> {
         let painting = |at_ns: u64| {
             let next = self.painted.partition_point(|painted| *painted < at_ns);

@@ -1,8 +1,8 @@
-//! One stroke on finer and finer cells: it leaves as much paint, and relief of the same wavelengths.
+//! One stroke on successively finer cells: it deposits the same amount of paint, and relief of the same wavelengths.
 //!
 //! Spectra of two sizes of cells are compared on the coarser ones: the finer relief is averaged onto them. Power is
 //! summed over octaves of wavelength, along the stroke and across it, from two of the coarser cells up to a quarter of
-//! the part that is looked at.
+//! the measured part.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -23,10 +23,9 @@ pub(super) const MOST_POWER: f64 = 2.0;
 /// Canvas, and the heights of its strokes, mm.
 const SIZE_MM: [f64; 2] = [80.0, 100.0];
 const HEIGHTS_MM: [f64; 4] = [14.0, 38.0, 62.0, 86.0];
-/// Load.
 const PAINT: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
 
-/// What strokes left on cells of one size.
+/// Paint of strokes on cells of one size.
 pub(super) struct Left {
     volume_mm3: f64,
     /// Height of the surface in the middle of each stroke, µm.
@@ -106,7 +105,7 @@ fn halved(map: &Map) -> Map {
 fn octaves(map: &Map, axis: usize) -> Vec<f64> {
     let length = map.size[axis];
     let (step, next) = [(1, map.size[0]), (map.size[0], 1)][axis];
-    // Waves of the whole length, of half of it, and so on: those of an octave.
+    // Waves of the whole length, of half of it, and so on, within an octave.
     let octave = |number: u32| -> Range<usize> {
         let most = (length / 2) >> number;
         most / 2 + 1..most + 1
@@ -187,7 +186,7 @@ mod tests {
         );
     }
 
-    /// Where fine cells have no coarser grid to level on, ridges are left of 520 times the power.
+    /// Without a coarser grid for levelling, ridges on fine cells keep 520 times the power.
     #[test]
     #[ignore = "long: the finest cells"]
     fn a_stroke_leaves_the_same_on_the_finest_cells() {

@@ -1,4 +1,4 @@
-//! A canvas, a brush and a hand for the measurements of looks, and the films that they leave.
+//! A canvas, a brush and a hand for the measurements of looks, and the resulting films.
 
 use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::QUANTUM_M;
@@ -14,7 +14,6 @@ use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 use maulstick_types::values::BrushName;
 
-/// Samples a second.
 const RATE_HZ: f64 = 250.0;
 /// Speed of the hand, mm/s.
 const SPEED: f64 = 100.0;
@@ -30,9 +29,9 @@ pub(crate) struct Stroke {
     pub(crate) from: [f64; 2],
     /// As `from`.
     pub(crate) to: [f64; 2],
-    /// 0 to 1.
+    /// Pressure, 0 to 1.
     pub(crate) pressure: f64,
-    /// Lean of the handle along the way, degrees.
+    /// Lean of the handle along the path, degrees.
     pub(crate) lean_deg: f64,
 }
 
@@ -126,7 +125,7 @@ impl Easel {
         let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
         let samples = (length / SPEED * RATE_HZ).ceil().max(2.0) as usize;
         let unit = way.map(|v| v / length);
-        // The broad side of a flat brush across the way.
+        // The broad side of a flat brush is across the path.
         let twist = atan2(-unit[0], unit[1]);
         for i in 0..=samples + 1 {
             let t = (i as f64 / samples as f64).min(1.0);
@@ -213,7 +212,7 @@ impl Map {
         }
     }
 
-    /// The same number on each of so many columns and rows of cells.
+    /// The same value in all cells.
     #[cfg(test)]
     pub(crate) fn level(size: [usize; 2], cell_mm: f64, value: f32) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! Paint, tools and grounds beyond what a painter takes: all stays finite and no quantum is lost.
+//! Paint, tools and grounds beyond a painter's: all stays finite and no quantum is lost.
 
 use maulstick_painting::edits::{Fill, FillPaint};
 use maulstick_types::scene::CANVAS;
@@ -6,7 +6,7 @@ use maulstick_types::values::FilmThickness;
 
 use super::easel::{Easel, Stroke, brush};
 
-/// All paint is accounted for, in finite amounts that are none below nothing.
+/// Checks that all paint is accounted for, in finite amounts that are not negative.
 fn whole(easel: &mut Easel) {
     assert_eq!(easel.offline.painting_mut().report().quanta_missing, 0);
     for map in [easel.film(None), easel.ground()] {

@@ -11,19 +11,19 @@ pub(crate) type Number = (&'static str, f64, &'static str);
 /// A measurement.
 pub(crate) type Measure = fn(Trial) -> Result<Vec<Number>, UserError>;
 
-/// How a measurement is made.
+/// Conditions of a measurement.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Trial {
     /// Side of a cell, mm.
     pub(crate) cell_mm: f64,
-    /// Who paints.
+    /// Painter of the trial.
     pub(crate) painter: Painter,
 }
 
-/// Who paints for a measurement.
+/// Painter of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Painter {
-    /// One who does as the measurement says.
+    /// One who follows the measurement's instructions.
     Able,
     /// One with too little paint, too heavy a hand or the wrong tool: the seeded fault of each number.
     Faulty,
@@ -53,8 +53,8 @@ pub(crate) const ALL: [Measure; 8] = [
 
 const PAINT: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
 
-/// Long strokes of a fully loaded 14 mm flat, each loaded anew: films, roughness, how far they fill the tooth. Bristles
-/// lie otherwise in each, so the numbers are means of several.
+/// Long strokes of a 14 mm flat, each fully loaded: films, roughness, filling of the tooth. Bristles differ in each, so
+/// the numbers are means of several.
 pub(crate) fn long_strokes(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut flat = brush("flat", 14.0)?;
     flat.load.film_um *= trial.pick(1.0, 0.1);
@@ -86,7 +86,7 @@ fn long_stroke(film: &Map, ground: &Map, y: f64) -> [Number; 11] {
     let surface = film.plus(ground).cut(thick.0, thick.1);
     let [below, above] = [ground, film].map(|map| map.cut(thick.0, thick.1));
     let fill = slope(&below.cells, &above.cells);
-    // Streaks lie along the stroke as threads of the weave do: here rows are compared by themselves.
+    // Streaks lie along the stroke like threads of the weave, so rows are compared separately.
     let [below, above] = [below, above].map(Map::less_rows);
     let in_rows = slope(&below.cells, &above.cells);
     [
@@ -161,7 +161,7 @@ pub(crate) fn six_loads(trial: Trial) -> Result<Vec<Number>, UserError> {
     ])
 }
 
-/// How much of a load three strokes of 120 mm use.
+/// Share of a load used by three strokes of 120 mm.
 pub(crate) fn three_strokes(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut easel = Easel::new([160.0, 70.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
     easel.load(PAINT)?;
@@ -186,8 +186,8 @@ pub(crate) fn three_strokes(trial: Trial) -> Result<Vec<Number>, UserError> {
     Ok(vec![("load_used_share", 1.0 - after / before, "")])
 }
 
-/// Cells covered by more than a film, by height of the ground: of all, of the lowest and of the
-/// highest tenth; and how much more lies on the highest.
+/// Cells covered by more than a film, by height of the ground: of all, of the lowest and of the highest tenth; and the
+/// ratio of paint on the highest.
 fn by_height(film: &Map, ground: &Map) -> [f64; 4] {
     const COVERED_UM: f32 = 1.5;
     let mut order: Vec<usize> = (0..film.cells.len()).collect();

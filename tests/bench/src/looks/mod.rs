@@ -1,9 +1,9 @@
-//! How the paint looks, in numbers: films, relief, streaks.
+//! Appearance of paint in numbers: films, relief, streaks.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`convergence`] | one stroke on cells of three sizes: volumes and spectra of its relief |
-//! | [`easel`] | a canvas, a brush, a hand, and the films that they leave |
+//! | [`easel`] | a canvas, a brush, a hand, and the resulting films |
 //! | [`marks`] | the measurements |
 
 mod convergence;

@@ -6,7 +6,7 @@ use super::marks::{self, Measure, Painter, Trial};
 
 const ANY: f64 = f64::INFINITY;
 
-/// What an able painter reaches, and a faulty one misses.
+/// Ranges that an able painter reaches, and a faulty one misses.
 fn holds(measure: Measure, wants: &[(&str, RangeInclusive<f64>)]) {
     let numbers = |painter| {
         let cell_mm = 0.125;
@@ -94,7 +94,7 @@ fn white_through_wet_blue_keeps_its_streaks() {
     holds(marks::through_wet, &[("through_wet.streaks", 0.03..=1.0)]);
 }
 
-/// What a knife leaves is smooth; ripples of half a millimetre would be found.
+/// The track of a knife is smooth; ripples of half a millimetre would be detected.
 #[test]
 fn a_knife_leaves_no_ripples() {
     let able = Trial {

@@ -1,5 +1,5 @@
-//! Rules of few wavelengths beside all 101 samples, over mixtures that they were not fitted to: of one to four of the
-//! measured paints with Dirichlet shares, half masstones, half films of 5 to 200 µm over black and white.
+//! Rules of few wavelengths compared with all 101 samples, on other mixtures than the fitted ones: of one to four of
+//! the measured paints with Dirichlet shares, half masstones, half films of 5 to 200 µm over black and white.
 
 use std::time::Instant;
 
@@ -10,11 +10,8 @@ use maulstick_rig::UserError;
 use super::mixtures::held_out;
 use crate::report::{Report, quantile, sorted};
 
-/// Mixtures.
 const COUNT: usize = 5000;
-/// Whose eye.
 const OBSERVER: Observer = Observer::Cie1931;
-/// Lights.
 const LIGHTS: [&str; 4] = ["D65", "D50", "A", "FL11"];
 /// Fits of which the median time is reported.
 const FITS: usize = 7;
@@ -57,7 +54,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let light = Illuminant::d65();
     let mut paints = paints.to_vec();
     let mut time = |_| {
-        // What was fitted before is remembered: other paints, by a hair, are not.
+        // Fits are cached: slightly different paints are not in the cache.
         paints[0].k.0.iter_mut().for_each(|k| *k *= 1.0 + 1e-12);
         let clock = Instant::now();
         std::hint::black_box(SamplingRule::fitted(16, OBSERVER, &light, &paints));

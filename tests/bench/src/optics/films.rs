@@ -26,7 +26,7 @@ pub(crate) fn studio() -> Result<Studio, UserError> {
     Ok(studio)
 }
 
-/// One layer of paint on all tiles, and what lies under each.
+/// One layer of paint on all tiles, and the ground of each.
 pub(crate) struct Layer {
     thickness: Vec<Vec<f32>>,
     /// A plane a wavelength, for each tile.

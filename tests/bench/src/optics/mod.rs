@@ -1,12 +1,11 @@
-//! Kubelka-Munk optics: how true the colours of a few wavelengths are, and how fast films become
-//! colour.
+//! Kubelka-Munk optics: accuracy of the colours of a few wavelengths, and speed of shading films.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`mixtures`] | mixtures that no rule was fitted to |
-//! | [`colours`] | rules beside all 101 samples |
-//! | [`films`] | films of a set of tiles, and what the rates are measured with |
-//! | [`rate`] | both backends, each beside a copy |
+//! | [`mixtures`] | mixtures outside of all fits |
+//! | [`colours`] | rules compared with all 101 samples |
+//! | [`films`] | films of a set of tiles, for measuring rates |
+//! | [`rate`] | both backends, each compared with a copy |
 
 mod colours;
 mod films;

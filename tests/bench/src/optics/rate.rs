@@ -14,7 +14,7 @@ use crate::report::{Report, quantile, sorted};
 
 /// Pairs of which medians are reported.
 const PAIRS: usize = 15;
-/// Pairs before them.
+/// Number of unmeasured pairs before them.
 const WARM_UP: usize = 2;
 /// Dry layers of the relit painting.
 const LAYERS: usize = 10;
@@ -115,7 +115,7 @@ fn on_gpu(
     Ok(())
 }
 
-/// Median time in which all dry layers are baked anew, s.
+/// Median time of baking all dry layers again, s.
 fn relight(films: &mut dyn FilmBackend, studio: &Studio, layer: &Layer) -> Result<f64, UserError> {
     let paints = layer.paints();
     let mut once = |_| {
@@ -134,8 +134,7 @@ fn relight(films: &mut dyn FilmBackend, studio: &Studio, layer: &Layer) -> Resul
     Ok(quantile(&sorted(times), 0.5))
 }
 
-/// What shading does on a device, without shading: as many bytes to it, from buffer to buffer, and
-/// back.
+/// The transfers of shading on a device, without shading: the same bytes to it, from buffer to buffer, and back.
 struct DeviceCopy {
     device: Device,
     bytes: Vec<u8>,

@@ -61,9 +61,10 @@ impl Libmypaint {
             .stdin(events)
             .status()
             .map_err(fault)?;
-        match status.success() {
-            true => Ok(()),
-            false => Err(UserError::failure("libmypaint cannot paint the recording")),
+        if status.success() {
+            Ok(())
+        } else {
+            Err(UserError::failure("libmypaint cannot paint the recording"))
         }
     }
 }

@@ -1,6 +1,6 @@
-//! A pen's sample from its system to the brush node, on the two ways that there are: from a Wayland compositor's socket through
-//! the thread of the window's pens, and from a tablet's reports through the HID daemon. Each way is a process of its own;
-//! they send in turn on the same bus, at the rate of pens. No window is drawn.
+//! Latency of a pen's sample from its system to the brush node, on both paths: from a Wayland compositor's socket
+//! through the thread of the window's pens, and from a tablet's reports through the HID daemon. Each path is a separate
+//! process; they send in turn on the same bus, at the rate of pens. No window is drawn.
 
 #[expect(dead_code, reason = "the tests of the window's pens use the rest")]
 #[path = "../../../../daemons/window-pen/tests/pens/compositor.rs"]
@@ -31,13 +31,13 @@ use self::compositor::{Compositor, Do, NewTool};
 use crate::report::{Report, quantile, sorted};
 use crate::running::{Running, fault};
 
-/// The two pens, as they are called on the bus.
+/// Names of the two pens on the bus.
 const PENS: [&str; 2] = ["window", "hid"];
 /// Full pressure of each; a sample's number is its pressure.
 const FULL: [f64; 2] = [65_535.0, 8191.0];
 /// Samples of each pen that are measured.
 const SAMPLES: u16 = 2000;
-/// Samples before them: the first one is sent until the bus is there.
+/// Number of unmeasured samples before them: the first one is sent until the bus is ready.
 const WARM_UP: u16 = 200;
 const ALL: usize = 1 + (WARM_UP + SAMPLES) as usize;
 /// Time between two samples, of the pens in turn: each has 250 a second.
@@ -75,7 +75,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let is_ready = AtomicBool::new(false);
     let (sent, arrived) = std::thread::scope(|scope| {
         let feeding = scope.spawn(|| feed(&mut seams, &is_ready));
-        let arrived = hear(&bus, &is_ready, || feeding.is_finished());
+        let arrived = receive(&bus, &is_ready, || feeding.is_finished());
         (feeding.join(), arrived)
     });
     let (sent, arrived) = (sent.map_err(|_| fault("the pens' thread fell"))??, arrived?);
@@ -173,8 +173,8 @@ impl Seams {
     }
 }
 
-/// Sends all samples, at the rate of a pen, once both pens are heard; their times, ns. Until then each sends a sample now and
-/// then, for what was sent before somebody listened is lost.
+/// Sends all samples, at the rate of a pen, once both pens are received; their times, ns. Until then each sends a
+/// sample occasionally, because samples without a listener are lost.
 fn feed(seams: &mut Seams, is_ready: &AtomicBool) -> Result<[Vec<u64>; 2], UserError> {
     let give_up = Instant::now() + PATIENCE;
     while !is_ready.load(Ordering::Acquire) {
@@ -196,8 +196,8 @@ fn feed(seams: &mut Seams, is_ready: &AtomicBool) -> Result<[Vec<u64>; 2], UserE
     Ok(sent)
 }
 
-/// Receives the samples as the brush node does until `is_over`; the times at which each first arrived, ns.
-fn hear(
+/// Receives the samples like the brush node until `is_over`; returns the time of each first arrival, ns.
+fn receive(
     bus: &ZenohBus,
     is_ready: &AtomicBool,
     is_over: impl Fn() -> bool,
@@ -224,7 +224,7 @@ fn hear(
             let StylusPose::Contact { pressure, .. } = received.message.pose else {
                 continue;
             };
-            // One that repeats the newest sample is not the first.
+            // A repetition of the newest sample is not the first.
             let first = pen.and_then(|pen| {
                 let number = (pressure * FULL[pen]).round() as usize;
                 arrived[pen].get_mut(number.checked_sub(1)?)

@@ -45,9 +45,10 @@ pub(crate) fn send(argument: &str) -> Result<(), UserError> {
         source: name_hash(pen),
         epoch: 1,
     };
-    match pen == PENS[0] {
-        true => send_windows(system, bus, origin),
-        false => send_tablets(system, bus, origin),
+    if pen == PENS[0] {
+        send_windows(system, bus, origin)
+    } else {
+        send_tablets(system, bus, origin)
     }
 }
 
@@ -140,7 +141,7 @@ fn send_windows(
     }
 }
 
-/// A window that shows nothing but the desk.
+/// A window that shows only the desk.
 struct Window;
 
 impl DeskView for Window {

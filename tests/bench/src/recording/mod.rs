@@ -19,10 +19,8 @@ use sample::{SECONDS, write};
 
 /// Openings, and places that are sought.
 const ROUNDS: u64 = 41;
-/// Targets, ms.
 const OPEN_MS: f64 = 50.0;
 const SEEK_MS: f64 = 5.0;
-/// The peer.
 const PEER: &str = "mcap";
 
 fn fault(error: impl std::fmt::Display) -> UserError {

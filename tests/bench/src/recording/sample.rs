@@ -1,4 +1,4 @@
-//! A recording as a rig leaves it: a pen of 1 kHz, the states of a brush, credit and status, and a painting of 50 MB.
+//! A recording like a rig's: a pen of 1 kHz, the states of a brush, credit and status, and a painting of 50 MB.
 
 use std::fs::File;
 use std::io::BufWriter;
@@ -32,7 +32,7 @@ struct Sender {
     seq: u64,
 }
 
-/// The file, and what thins the JSON in it.
+/// The file, and the filter of its JSON.
 struct Recorder {
     writer: RecordingWriter<BufWriter<File>>,
     json: RateLimit,

@@ -64,9 +64,10 @@ pub(crate) fn chart(library: &PaintLibrary, viewing: &Viewing) -> Result<Picture
                 continue;
             }
             for (step, [a, b]) in STEPS.into_iter().enumerate() {
-                let colour = match i < j {
-                    true => look(&[(row, a), (column, b)]),
-                    false => look(&[(row, a), (column, b), (white, a + b)]),
+                let colour = if i < j {
+                    look(&[(row, a), (column, b)])
+                } else {
+                    look(&[(row, a), (column, b), (white, a + b)])
                 };
                 page.fill([x + step * STEP, y], [STEP, HEIGHT], colour);
             }

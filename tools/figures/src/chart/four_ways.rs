@@ -15,15 +15,16 @@ const GAP: usize = 12;
 const MARGIN: usize = 20;
 /// Heights of words, pixels.
 const TITLE: f32 = 22.0;
-const SMALL: f32 = 16.0;
+const SMALL_TEXT_PX: f32 = 16.0;
 
-/// Shares of the second paint, and how they are written: 0, 1:64 by doublings to 64:1, 1.
+/// Shares of the second paint, and their labels: 0, 1:64 by doublings to 64:1, 1.
 pub(crate) fn shares() -> Vec<(f64, String)> {
     let step = |k: i32| {
         let ratio = f64::from(1 << k.unsigned_abs());
-        match k < 0 {
-            true => (1.0 / (1.0 + ratio), format!("{ratio}:1")),
-            false => (ratio / (1.0 + ratio), format!("1:{ratio}")),
+        if k < 0 {
+            (1.0 / (1.0 + ratio), format!("{ratio}:1"))
+        } else {
+            (ratio / (1.0 + ratio), format!("1:{ratio}"))
         }
     };
     let mut shares = vec![(0.0, "1:0".to_owned())];
@@ -32,7 +33,7 @@ pub(crate) fn shares() -> Vec<(f64, String)> {
     shares
 }
 
-/// Title of a way of mixing; `rule` is the rule's name.
+/// Title of a method of mixing; `rule` is the rule's name.
 pub(crate) fn title(way: Way, rule: &str) -> String {
     match way {
         Way::Reference => "101 samples".into(),
@@ -49,10 +50,9 @@ pub(crate) fn mean_and_most(delta_e: &[f64]) -> [f64; 2] {
     [mean, most]
 }
 
-/// The four rows with what they show.
+/// The four rows with their captions.
 ///
-/// # Errors
-/// A [`UserError`] where the font cannot be read.
+/// # Errors A [`UserError`] where the font cannot be read.
 pub(crate) fn picture(
     gradings: &[Grading],
     ends: [&str; 2],
@@ -71,9 +71,11 @@ pub(crate) fn picture(
             [title(grading.way, rule), off]
         })
         .collect();
-    let widths = lines
-        .iter()
-        .map(|[title, off]| measure.length(title, TITLE).max(measure.length(off, SMALL)));
+    let widths = lines.iter().map(|[title, off]| {
+        measure
+            .length(title, TITLE)
+            .max(measure.length(off, SMALL_TEXT_PX))
+    });
     let left = 2 * MARGIN + widths.max().unwrap_or(0);
     let top = MARGIN + 52;
     let across = shares.len() * PATCH[0];
@@ -90,13 +92,13 @@ pub(crate) fn picture(
         TITLE,
     );
     for (i, (_, words)) in shares.iter().enumerate() {
-        let inset = PATCH[0].saturating_sub(page.length(words, SMALL)) / 2;
-        page.write(words, [left + i * PATCH[0] + inset, top - 8], SMALL);
+        let inset = PATCH[0].saturating_sub(page.length(words, SMALL_TEXT_PX)) / 2;
+        page.write(words, [left + i * PATCH[0] + inset, top - 8], SMALL_TEXT_PX);
     }
     for (row, (grading, [title, off])) in gradings.iter().zip(&lines).enumerate() {
         let y = top + row * (PATCH[1] + GAP);
         page.write(title, [MARGIN, y + 30], TITLE);
-        page.write(off, [MARGIN, y + 52], SMALL);
+        page.write(off, [MARGIN, y + 52], SMALL_TEXT_PX);
         for (i, seen) in grading.seen.iter().enumerate() {
             page.fill([left + i * PATCH[0], y], PATCH, seen.bytes());
         }

@@ -18,7 +18,7 @@ use crate::chart::four_ways;
 struct Comparison {
     ends: [String; 2],
     shares: Vec<f64>,
-    /// The shares as they are written.
+    /// Labels of the shares.
     ratios: Vec<String>,
     rows: [Grading; 4],
     /// Name of the rule.
@@ -67,8 +67,8 @@ fn mixed(options: &CompareOptions) -> Result<Comparison, UserError> {
     })
 }
 
-/// The two ends of a graded mixture: given, those of a mixture of two paints, or the dissertation's
-/// as far as they are measured (its Prussian blue is not).
+/// The two ends of a graded mixture: given ones, those of a mixture of two paints, or the dissertation's as far as
+/// measured (its Prussian blue is not).
 fn ends(mixtures: &[String]) -> Result<[String; 2], UserError> {
     match mixtures {
         [] => Ok(["Yellow Ochre", "Phthalo Blue Green Shade"].map(str::to_owned)),

@@ -1,4 +1,4 @@
-//! `maulstick demo effects`: what the paint model is for.
+//! `maulstick demo effects`: effects of the paint model.
 
 use maulstick::commands::{progress_bar, write_picture};
 use maulstick::say;

@@ -16,9 +16,9 @@ use maulstick_script::paintings::Board;
 
 /// Size of a panel, mm.
 const PANEL_MM: [f64; 2] = [86.0, 48.0];
-/// Room for the words over a panel, mm.
+/// Height of the words over a panel, mm.
 const WORDS_MM: f64 = 13.0;
-/// Size of those that say what is done, mm.
+/// Size of the caption's text, mm.
 const WORDS_SIZE_MM: f64 = 3.75;
 
 const YELLOW: &str = "Hansa Yellow Opaque";
@@ -26,7 +26,7 @@ const BLUE: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
 const RED: &str = "Pyrrole Red=0.8,Titanium White=0.2";
 const WHITE: &str = "Titanium White";
 
-/// An effect: its name, what is done, and how.
+/// An effect: its name, caption and drawing.
 struct Effect {
     name: &'static str,
     words: &'static str,
@@ -77,10 +77,9 @@ const EFFECTS: [Effect; 8] = [
     },
 ];
 
-/// The sheet, on boards like this; `told` hears of each panel.
+/// The sheet, on boards like this; `told` receives each panel's progress.
 ///
-/// # Errors
-/// A [`UserError`] where a brush or a paint is refused, or where it would have too many pixels.
+/// # Errors A [`UserError`] where a brush or a paint is refused, or where it would have too many pixels.
 pub(crate) fn effects(
     library: &PaintLibrary,
     board: Board,

@@ -6,17 +6,16 @@ use maulstick_painting::EditError;
 use maulstick_session::Offline;
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 
-/// Samples a second.
 const RATE_HZ: f64 = 250.0;
-/// Between two gestures, s: longer than what joins strokes.
+/// Pause between two gestures, s: longer than the gap within a stroke.
 const PAUSE_S: f64 = 0.3;
 
 /// State of the hand at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Moment {
-    /// Its point, mm from the lower left corner of the sheet.
+    /// Point of the brush, mm from the lower left corner of the sheet.
     pub(crate) at: [f64; 2],
-    /// 0 to 1.
+    /// Pressure, 0 to 1.
     pub(crate) pressure: f64,
     /// Lean of the handle from upright, degrees: to the right, and up.
     pub(crate) tilt_deg: [f64; 2],
@@ -28,7 +27,7 @@ pub(crate) struct Moment {
 pub(crate) struct Gesture {
     /// Duration, s.
     pub(crate) seconds: f64,
-    /// The hand.
+    /// Motion of the hand over time.
     pub(crate) hand: Box<dyn Fn(f64) -> Moment>,
 }
 

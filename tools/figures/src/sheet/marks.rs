@@ -15,8 +15,7 @@ pub(crate) struct Mark {
 /// Size of the panel of a brush's marks, mm.
 pub(crate) const PANEL_MM: [f64; 2] = [super::MARKS_MM, 52.0];
 
-/// A stroke along points, whose brush leads with its broad side across the way; `edge` turns it on
-/// its edge.
+/// A stroke along points, with the brush's broad side across the path; `edge` turns it on its edge.
 pub(crate) fn stroke(
     points: Vec<[f64; 2]>,
     seconds: f64,
@@ -40,8 +39,8 @@ pub(crate) fn stroke(
     }
 }
 
-/// The marks of a brush on a panel: from a touch to full pressure; a wave; on its edge, twice; three
-/// dabs; lightly until it is dry.
+/// Marks of a brush on a panel: from a touch to full pressure; a wave; on its edge, twice; three dabs; lightly until it
+/// is dry.
 pub(crate) fn marks(file: &BrushFile) -> Vec<Mark> {
     let width_mm = file.head.width_mm;
     let [left, right] = [-1.0, 1.0].map(|place| file.length_share([place, 0.0]));

@@ -2,11 +2,11 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`effects`] | what the paint model is for |
-//! | [`gesture`] | what a hand does, and how it paints |
+//! | [`effects`] | effects of the paint model |
+//! | [`gesture`] | a gesture of the hand, and its painting |
 //! | [`marks`] | the marks of a brush |
 //! | [`one_stroke`] | the six marks of a double-loaded one |
-//! | [`softening`] | what a blender does between two wet colours |
+//! | [`softening`] | a blender between two wet colours |
 
 pub(crate) mod effects;
 pub(crate) mod gesture;
@@ -39,7 +39,7 @@ const GAP_MM: f64 = 3.0;
 const SIDE_MM: f64 = 52.5;
 /// Size of a portrait beside that of the brush.
 const PORTRAIT_SCALE: f64 = 0.75;
-/// Pixels of a sheet at most.
+/// Greatest number of pixels of a sheet.
 const MOST_PIXELS: usize = 100_000_000;
 /// A brush's name in its own painting.
 const BRUSH: &str = "main";
@@ -52,7 +52,7 @@ const ONE_STROKE_MM: f64 = 13.5;
 /// The two colours of a double-loaded brush.
 const DOUBLE: [&str; 2] = ["Quinacridone Magenta=0.6,Pyrrole Red=0.4", "Titanium White"];
 
-/// A page that is laid out in mm, of pixels that are the cells of its panels.
+/// A page laid out in mm, whose pixels are the cells of its panels.
 struct Sheet {
     page: Page,
     cell_mm: f64,
@@ -76,14 +76,14 @@ impl Sheet {
         pixels(mm, self.cell_mm)
     }
 
-    /// Writes a line with its left end and base line here, its height in mm.
+    /// A page laid out in mm, whose pixels are the cells of its panels.
     fn write(&mut self, words: &str, at_mm: [f64; 2], height_mm: f64) {
         let at = at_mm.map(|mm| self.pixels(mm));
         self.page
             .write(words, at, (height_mm / self.cell_mm) as f32);
     }
 
-    /// Puts a picture with its upper left corner here.
+    /// Copies a picture here with its upper left corner.
     fn paste(&mut self, picture: &Picture, at_mm: [f64; 2]) {
         let at = at_mm.map(|mm| self.pixels(mm));
         self.page.paste(picture, at);
@@ -241,10 +241,9 @@ fn library_brush(kind: &str) -> Result<BrushFile, UserError> {
     BrushFile::library(kind).map_err(|error| UserError::failure(error.to_string()))
 }
 
-/// The whole sheet, on cells of this side; `told` hears of each panel.
+/// The whole sheet, on cells of this side; `told` receives each panel's progress.
 ///
-/// # Errors
-/// As [`brush_panel`], and where it would have too many pixels.
+/// # Errors As [`brush_panel`], and where it would have too many pixels.
 pub(crate) fn sheet(
     library: &PaintLibrary,
     cell_mm: f64,

@@ -106,7 +106,7 @@ fn leaf(middle: [f64; 2]) -> Gesture {
     }
 }
 
-/// As a petal, with the outer corner wiggled out and in: a rim of scallops.
+/// A petal with the outer corner wiggled out and in: a rim of scallops.
 fn shell(middle: [f64; 2], width_mm: f64) -> Gesture {
     let base = [middle[0], middle[1] - 5.0];
     Gesture {

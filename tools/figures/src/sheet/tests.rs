@@ -1,4 +1,4 @@
-//! What the marks of a brush must look like, measured.
+//! Measured appearance of a brush's marks.
 
 use maulstick_appearance::picture::Picture;
 use maulstick_optics::PaintLibrary;
@@ -27,7 +27,7 @@ fn one(kind: &str, pressure: impl Fn(f64) -> f64 + 'static) -> Picture {
     panel.picture()
 }
 
-/// Whether each pixel of a column is painted, from the top.
+/// True for each painted pixel of a column, from the top.
 fn column(picture: &Picture, x: usize) -> Vec<bool> {
     (0..picture.height)
         .map(|y| {

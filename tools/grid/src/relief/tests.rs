@@ -1,4 +1,4 @@
-//! What the runs over relief assert, and the faults that they must find.
+//! Assertions on the runs over relief, and the faults that they must find.
 
 use super::*;
 use crate::tests::SEVENTH;
@@ -71,8 +71,7 @@ fn some(stiffness: f64, ground: Ground, path: Path) -> impl Iterator<Item = Reli
     runs.filter(move |it| (it.run.stiffness, it.ground, it.friction) == (stiffness, ground, 0.0))
 }
 
-/// The seeded faults: a force that is sent over a network shakes a fingertip here too, and a servo that does nothing is
-/// found out.
+/// The seeded faults: a force sent over a network shakes a fingertip here too, and a servo without force is detected.
 #[test]
 fn a_force_from_afar_and_none_are_found_out() {
     for ground in [Ground::Rough, Ground::Ridge, Ground::Edge] {

@@ -5,7 +5,7 @@
 //! | --- | --- |
 //! | `tr!` | a sentence that is shown, with its places filled in |
 //! | `tr_noop!` | a sentence in a table, for [`translated`] where it is shown |
-//! | [`known`] | a word that another process or a file has, such as the name of a brush |
+//! | [`known`] | a word from another process or a file, such as the name of a brush |
 //! | [`step`] | a step of the history |
 //! | [`key_name`] | a key |
 //!
@@ -19,9 +19,9 @@ use std::sync::{LazyLock, OnceLock};
 use maulstick_types::scene::Layer;
 use serde::Deserialize;
 
-/// The sentence in the language of the window. Names fill its places: `tr!("Saved to {file}", file)`, or
-/// `tr!("{count} paints", count = paints.len())`. What one English word has several translations for has its meaning
-/// before a bar, which is not shown: `tr!("theme|Light")`.
+/// The sentence in the language of the window. Names fill its places: `tr!("Saved to {file}", file)`, or `tr!("{count}
+/// paints", count = paints.len())`. An English word with several translations has its meaning before a bar, which is
+/// not shown: `tr!("theme|Light")`.
 #[macro_export]
 macro_rules! tr {
     ($english:literal) => {
@@ -115,7 +115,7 @@ thread_local! {
 /// Code of the system's language; English unless [`follow_system`] was called.
 static SYSTEM: OnceLock<&'static str> = OnceLock::new();
 
-/// Takes the system's language as the one of a painter who has chosen none.
+/// Uses the system's language for a painter who has chosen none.
 pub fn follow_system() {
     let code = spoken(sys_locale::get_locales());
     if SYSTEM.set(code).is_err() {
@@ -146,7 +146,7 @@ pub fn choose(code: Option<&str>) {
     });
 }
 
-/// Lets a thread beside the window's speak its language: called there with [`chosen`] of the window.
+/// Gives a thread beside the window's its language: called there with [`chosen`] of the window.
 pub fn adopt(language: Option<&'static Language>) {
     CHOSEN.set(language);
 }
@@ -176,7 +176,7 @@ pub fn lacking() -> BTreeSet<String> {
     LACKING.with_borrow(BTreeSet::clone)
 }
 
-/// A word of another process or of a file, in the language of the window where it is known there.
+/// A word of another process or of a file, translated if known.
 #[must_use]
 pub fn known(english: &str) -> &str {
     let language = CHOSEN.get();

@@ -1,4 +1,4 @@
-//! Command bar in a lower corner: menu of all commands, undo, redo, help, and what the brush carries.
+//! Command bar in a lower corner: menu of all commands, undo, redo, help, and the brush's load.
 
 use eframe::egui::containers::menu::MenuButton;
 use eframe::egui::{
@@ -12,7 +12,7 @@ use crate::input::keys::{Action, BINDINGS, Binding};
 use crate::widgets::brush_gauge;
 use crate::widgets::context::PanelContext;
 
-/// Entries of the menu, by what they concern.
+/// Entries of the menu, by subject.
 const GROUPS: [(&str, &[Action]); 4] = [
     (
         tr_noop!("Painting"),
@@ -79,7 +79,6 @@ const GROUPS: [(&str, &[Action]); 4] = [
 /// Distance from the window's edges, points.
 const MARGIN: f32 = 6.0;
 
-/// Its area.
 #[must_use]
 pub(crate) fn id() -> Id {
     Id::unique("bar")

@@ -11,10 +11,9 @@ use crate::panels::{self, Panel};
 use crate::settings::window_side::WindowSide;
 use crate::widgets::context::PanelContext;
 
-/// Room at the right for the scroll bar, points.
+/// Width of the scroll bar at the right, points.
 const BAR: f32 = 14.0;
 
-/// The column.
 pub(super) struct Column {
     panels: Vec<Box<dyn Panel>>,
     /// True if it is to get the keyboard.
@@ -36,7 +35,6 @@ impl Column {
         self.is_wanted = true;
     }
 
-    /// Shows it.
     pub(super) fn show(&mut self, context: &Context, work: &mut PanelContext<'_>) {
         let side = column_side(work.preferences);
         let (corner, _, inward) = side.anchors();
@@ -56,7 +54,7 @@ impl Column {
                         // Else it is as narrow as its content, and the bar with it.
                         .auto_shrink([false, true])
                         .show(ui, |ui| {
-                            // The bar lies over what is at the edge.
+                            // The bar covers the edge.
                             ui.set_max_width(ui.available_width() - BAR);
                             self.panels(ui, work);
                         });
@@ -131,9 +129,10 @@ fn head(ui: &mut Ui, side: WindowSide, work: &mut PanelContext<'_>) {
 
 /// The side of the window that a point is nearer to.
 fn half_of(window: Rect, at: Pos2) -> WindowSide {
-    match at.x < window.center().x {
-        true => WindowSide::Left,
-        false => WindowSide::Right,
+    if at.x < window.center().x {
+        WindowSide::Left
+    } else {
+        WindowSide::Right
     }
 }
 

@@ -39,7 +39,7 @@ pub(super) struct FirstRun {
 }
 
 impl FirstRun {
-    /// Follows the painting, and shows the line while it helps, beside the part of the window that the palette covers.
+    /// Tracks the painting, and shows the line while it helps, beside the part of the window covered by the palette.
     pub(super) fn show(
         &mut self,
         context: &Context,
@@ -72,12 +72,13 @@ impl FirstRun {
         }
         let hand = rig.brushes.get(rig.in_hand);
         let carried = hand.and_then(|brush| brush.carried.as_ref());
-        let help = match carried.is_some_and(|carried| carried.load_share > 0.0) {
-            true => tr!(
+        let help = if carried.is_some_and(|carried| carried.load_share > 0.0) {
+            tr!(
                 "The brush is full: drag it over the canvas. For another colour clean it with {key}, and drag it through a paint of the palette.",
                 key = preferences.keys.written(context, Action::Clean)
-            ),
-            false => translated(HELP).to_owned(),
+            )
+        } else {
+            translated(HELP).to_owned()
         };
         line(context, &help, palette, preferences);
     }
@@ -92,14 +93,15 @@ fn line(context: &Context, help: &str, palette: Option<Rect>, preferences: &Pref
         WindowSide::Right => palette.right() > middle,
         WindowSide::Left => palette.left() < middle,
     };
-    let (side, aside, above, most) = match palette.is_some_and(is_out) {
-        false => (
+    let (side, aside, above, most) = if palette.is_some_and(is_out) {
+        (rack.other(), BESIDE, ABOVE_BAR, LEAST_WIDTH)
+    } else {
+        (
             rack,
             sides::rack_at(preferences, rack) + BESIDE,
             ABOVE_NAME,
             WIDTH,
-        ),
-        true => (rack.other(), BESIDE, ABOVE_BAR, LEAST_WIDTH),
+        )
     };
     let (_, corner, inward) = side.anchors();
     let aside = aside + sides::column_at(preferences, side);

@@ -1,4 +1,4 @@
-//! Pages of help: a first painting in seven steps, and what program this is.
+//! Pages of help: a first painting in seven steps, and about the program.
 
 use std::fmt::Display;
 
@@ -140,7 +140,7 @@ fn steps_of(ui: &mut Ui, work: &PanelContext<'_>) {
     }
 }
 
-/// Version, licence, and what computes the paint.
+/// Version, licence, and backend of the paint.
 fn about_it(ui: &mut Ui, work: &PanelContext<'_>) {
     ui.label(tr!(
         "Oil paint and brushes, computed from what was measured of them."

@@ -32,7 +32,7 @@ pub(super) fn show(context: &Context, keymap: &Keymap, is_open: &mut bool) {
                     .striped(true)
                     .show(ui, |ui| {
                         for (binding, key) in keymap.bindings() {
-                            // What has no key is in the menu, and in the settings.
+                            // Actions without a key are in the menu, and in the settings.
                             if let Some(key) = key {
                                 key_row(ui, &keys::written(context, &key), binding.words);
                             }
@@ -45,7 +45,7 @@ pub(super) fn show(context: &Context, keymap: &Keymap, is_open: &mut bool) {
         });
 }
 
-/// A row of the table of keys: a key at the right of its column, beside what it does.
+/// A row of the table of keys: a key at the right of its column, beside its action.
 fn key_row(ui: &mut Ui, key: &str, words: &str) {
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.monospace(key));
     ui.label(translated(words));

@@ -10,13 +10,12 @@ use maulstick_ui_kit::background_task::BackgroundTask;
 
 use crate::dialogs::paths;
 
-/// So many entries of a folder are shown at most.
+/// Greatest number of displayed entries of a folder.
 const MOST: usize = 5_000;
 
 /// A file or folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Entry {
-    /// Its name.
     pub name: String,
     /// True for a folder.
     pub is_folder: bool,
@@ -61,7 +60,7 @@ impl Folder {
         }
     }
 
-    /// Goes to another folder, or stays.
+    /// Changes to another folder, or stays.
     pub(crate) fn go(&mut self, path: PathBuf) {
         if self.path != path {
             self.path = path;

@@ -1,5 +1,5 @@
-//! Small pictures of paintings in lists of files: read one after the other beside the window, from what their files keep of
-//! how they were last displayed.
+//! Small pictures of paintings in lists of files, read one after the other beside the window, from the files' last
+//! displayed tiles.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
@@ -19,16 +19,15 @@ use maulstick_client::thumbnails::Picture;
 
 /// Pixels of the longer side.
 const SIDE: u32 = 96;
-/// Pictures that are kept at most.
+/// Greatest number of cached pictures.
 const KEPT: usize = 64;
 
-/// What is known of a picture.
+/// State of a picture.
 enum Known {
-    /// It is to be read, or is being read.
+    /// It is to be read, or being read.
     Coming,
-    /// There is none.
+    /// The file has none.
     Missing,
-    /// It is here.
     Here(TextureHandle),
 }
 
@@ -36,7 +35,7 @@ enum Known {
 #[derive(Default)]
 pub(crate) struct Pictures {
     known: BTreeMap<PathBuf, Known>,
-    /// The paths that are known, the oldest first.
+    /// Known paths, the oldest first.
     order: VecDeque<PathBuf>,
     /// Paths to be read; the one that came into sight last comes first.
     wanted: Vec<PathBuf>,
@@ -50,7 +49,7 @@ impl std::fmt::Debug for Pictures {
 }
 
 impl Pictures {
-    /// Takes in what was read, and has the next one read.
+    /// Stores the picture that was read, and starts reading the next.
     pub(crate) fn take_in(&mut self, context: &Context) {
         if let Some((path, task)) = &self.reading
             && let Poll::Ready(read) = task.poll()
@@ -73,7 +72,7 @@ impl Pictures {
         }
     }
 
-    /// The picture of a painting, if it is here; one that is not known is wanted.
+    /// The picture of a painting, if loaded; otherwise it is requested.
     fn of(&mut self, path: &Path) -> Option<&TextureHandle> {
         if !self.known.contains_key(path) {
             while self.order.len() >= KEPT {
@@ -126,9 +125,12 @@ struct Sums {
 impl Sums {
     fn of(cells: [u32; 2]) -> Self {
         let longer = cells[0].max(cells[1]).max(1);
-        let size = cells.map(|side| match longer > SIDE {
-            true => (side * SIDE).div_ceil(longer).max(1) as usize,
-            false => side.max(1) as usize,
+        let size = cells.map(|side| {
+            if longer > SIDE {
+                (side * SIDE).div_ceil(longer).max(1) as usize
+            } else {
+                side.max(1) as usize
+            }
         });
         Self {
             size,
@@ -163,9 +165,12 @@ impl Sums {
     fn picture(&self, ground: [f32; 3]) -> Option<Picture> {
         let byte =
             |linear: f32| (srgb_encode(f64::from(linear).clamp(0.0, 1.0)) * 255.0).round() as u8;
-        let pixel = |sum: &[f32; 4]| match sum[3] > 0.0 {
-            true => [0, 1, 2].map(|i| byte(sum[i] / sum[3])),
-            false => ground.map(byte),
+        let pixel = |sum: &[f32; 4]| {
+            if sum[3] > 0.0 {
+                [0, 1, 2].map(|i| byte(sum[i] / sum[3]))
+            } else {
+                ground.map(byte)
+            }
         };
         Picture::new(self.size, self.sums.iter().flat_map(pixel).collect())
     }
@@ -225,8 +230,8 @@ mod tests {
         tile.to_bytes()
     }
 
-    /// A painting of 300 × 200 cells, all painted and displayed at this level: its lowest row of tiles in red, the rest in
-    /// blue. The versions that were displayed are older by so much than what is painted.
+    /// A painting of 300 × 200 cells, all painted and displayed at this level: its lowest row of tiles in red, the rest
+    /// in blue. The displayed versions are older than the painted ones by `older`.
     fn painted(path: &Path, level: u32, older: u64) {
         let settings = DocumentSettings::new(path, Access::Paint);
         let (document, _) = Document::open(&settings).expect("begun");

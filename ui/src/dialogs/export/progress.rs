@@ -41,9 +41,10 @@ pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) {
     let Some(export) = export.filter(|export| export.since_ns >= SHORT_NS) else {
         return;
     };
-    let above = match work.rig.replay.is_some() {
-        true => transport_bar::OVER,
-        false => ABOVE,
+    let above = if work.rig.replay.is_some() {
+        transport_bar::OVER
+    } else {
+        ABOVE
     };
     Area::new(Id::unique("exporting"))
         .order(Order::Foreground)

@@ -1,4 +1,4 @@
-//! Asks before a painting that is only in memory is closed.
+//! Question before a painting that is only in memory is closed.
 
 use eframe::egui::Ui;
 
@@ -30,7 +30,7 @@ impl UnsavedState {
         self.would_go && self.let_go
     }
 
-    /// Asks, where there is something to ask.
+    /// Asks, if necessary.
     pub(crate) fn show(&mut self, ui: &mut Ui) {
         if self.would_go {
             ui.add_space(6.0);

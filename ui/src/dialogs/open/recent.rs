@@ -11,13 +11,12 @@ use crate::dialogs::browser::PICTURE;
 use crate::dialogs::browser::pictures::Pictures;
 use crate::dialogs::paths;
 
-/// So many are shown.
+/// Greatest number of shown paintings.
 const MOST: usize = 4;
 
 /// A painting that was open before.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Recent {
-    /// Its file.
     pub path: PathBuf,
     /// Time since it was last changed, in words; `None` if the file is gone.
     pub age: Option<String>,
@@ -31,7 +30,7 @@ pub(crate) struct RecentList {
 }
 
 impl RecentList {
-    /// Looks which of these paintings are still there, but for the one that is open.
+    /// Checks which of these paintings still exist, except the open one.
     #[must_use]
     pub(crate) fn new(context: &Context, recent: &[PathBuf], open: &Path) -> Self {
         let others = recent.iter().filter(|path| path.as_path() != open);
@@ -53,7 +52,7 @@ impl RecentList {
         }
     }
 
-    /// Those that are known.
+    /// A list of known paintings.
     #[cfg(test)]
     pub(crate) fn of(here: Vec<Recent>) -> Self {
         Self { coming: None, here }

@@ -10,14 +10,15 @@ use crate::settings::presets::{BeforePreset, Preset};
 use crate::widgets::context::PanelContext;
 
 impl PanelContext<'_> {
-    /// A preset of the brush in the hand as it is used now; `None` until it is known.
+    /// A preset of the brush in hand with its current settings; `None` until it is known.
     #[must_use]
     pub(crate) fn preset_in_hand(&self, name: &str) -> Option<Preset> {
         let file = self.in_hand()?;
         let (tuning, handling) = (self.rig.tuning(), self.rig.handling());
-        let text = match is_of_library(file) {
-            true => String::new(),
-            false => file.to_toml().ok()?,
+        let text = if is_of_library(file) {
+            String::new()
+        } else {
+            file.to_toml().ok()?
         };
         let mut modes = BrushMode::NAMES.iter();
         let mode = modes.find(|(_, mode)| *mode == handling.mode);
@@ -37,10 +38,9 @@ impl PanelContext<'_> {
         })
     }
 
-    /// Takes up a preset: the brush, how it is used, and then its paint.
+    /// Takes up a preset: the brush, its settings, and then its paint.
     ///
-    /// # Errors
-    /// A [`UserError`] where something of it is wrong; then nothing is changed.
+    /// # Errors A [`UserError`] for an invalid part; nothing is changed then.
     pub(crate) fn take_up_preset(&mut self, preset: &Preset) -> Result<(), UserError> {
         if !self.may_change_brush() {
             return Ok(());

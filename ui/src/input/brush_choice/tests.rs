@@ -208,7 +208,7 @@ fn the_field_of_the_paint_says_what_was_loaded_last_wherever_that_was_asked_for(
     assert_eq!(bench.preferences.brushes.loading.paint, "", "another brush");
     bench.work().brush_answered(&load("Bone Black", "main"));
     assert_eq!(bench.preferences.brushes.loading.paint, "Bone Black");
-    // What was typed in parts and thinned there stays as it was typed.
+    // A load typed in parts and thinned stays as typed.
     bench.preferences.brushes.loading.paint = "2 Bone Black, 2 Titanium White".into();
     bench.preferences.brushes.loading.thinner = 0.5;
     let thinned = "Bone Black=0.25,Titanium White=0.25,Thinner=0.5";

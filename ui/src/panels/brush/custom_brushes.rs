@@ -9,7 +9,6 @@ use super::entry;
 use crate::render::brush::icon_cache;
 use crate::widgets::context::PanelContext;
 
-/// The rows.
 #[derive(Debug, Default)]
 pub(super) struct OwnBrushes {
     path: String,

@@ -12,7 +12,6 @@ use crate::widgets::{brush_gauge, mixture_field};
 
 const THINNER: Number<'_> = Number::percent::<ThinnerShare>(tr_noop!("Thinner"));
 
-/// The rows.
 #[derive(Debug, Default)]
 pub(super) struct PaintRows {
     sliders: Sliders,

@@ -8,7 +8,6 @@ use super::entry;
 use crate::settings::presets::{Preset, check_name};
 use crate::widgets::context::PanelContext;
 
-/// The rows.
 #[derive(Debug, Default)]
 pub(super) struct PresetRows {
     /// The name of a new one.
@@ -35,9 +34,10 @@ fn small_width(ui: &Ui, word: &str) -> f32 {
 
 /// Name of a preset in the language of the window; one that a painter gave stays as it is.
 fn shown_name(preset: &Preset) -> &str {
-    match ["Glaze", "Scumble", "Blend", "Dry brush"].contains(&&*preset.name) {
-        true => known(&preset.name),
-        false => &preset.name,
+    if ["Glaze", "Scumble", "Blend", "Dry brush"].contains(&&*preset.name) {
+        known(&preset.name)
+    } else {
+        &preset.name
     }
 }
 

@@ -33,7 +33,6 @@ impl Default for FilmForm {
 }
 
 impl FilmForm {
-    /// Shows it.
     pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let library = std::sync::Arc::clone(&work.rig.library);
         let paints = library.paints().iter().map(|paint| paint.name.as_str());

@@ -41,7 +41,6 @@ const ZOOM: Number<'_> = Number::percent::<Zoom>(tr_noop!("Zoom"));
 /// Name of a flip among the steps of the history.
 const _: &str = tr_noop!("flip");
 
-/// The panel.
 #[derive(Debug, Default)]
 pub(crate) struct CanvasPanel {
     sliders: Sliders,
@@ -108,7 +107,7 @@ fn size(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
     });
 }
 
-/// How its paint behaves; another choice converts what is painted.
+/// Model of the paint; another choice converts the existing paint.
 fn model(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
     let chosen = choice(ui, tr!("Paint model"), &canvas.model, model_names());
     if let Some(model) = chosen {

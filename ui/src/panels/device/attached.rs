@@ -1,4 +1,4 @@
-//! What is attached and not in the rig: added with a click, or what is missing for that.
+//! Attached devices that are not in the rig: a click adds one, or a text says what is missing for that.
 
 use eframe::egui::{Frame, RichText, Ui};
 use maulstick_device_setup::add::NewDevice;
@@ -10,7 +10,6 @@ use maulstick_ui_kit::rows::note;
 use crate::rig::device_order::SetupChange;
 use crate::widgets::context::PanelContext;
 
-/// Shows it.
 pub(super) fn show(ui: &mut Ui, work: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(tr!("Attached")).strong());

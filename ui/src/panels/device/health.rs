@@ -62,18 +62,20 @@ fn quantile(counts: &[u64], share: f64) -> Option<usize> {
     end.filter(|_| all > 0)
 }
 
-/// A bin of so many, in words.
+/// Number of a bin among `bins`, in words.
 fn bin(place: usize, bins: usize) -> String {
     let time = |place: usize| {
         let us = FIRST_US * 2f64.powi(place.min(60) as i32);
-        match us < 1000.0 {
-            true => format!("{us:.0} µs"),
-            false => format!("{:.1} ms", 1e-3 * us),
+        if us < 1000.0 {
+            format!("{us:.0} µs")
+        } else {
+            format!("{:.1} ms", 1e-3 * us)
         }
     };
-    match place + 1 < bins {
-        true => tr!("under {time}", time = time(place)),
-        false => tr!("over {time}", time = time(place.saturating_sub(1))),
+    if place + 1 < bins {
+        tr!("under {time}", time = time(place))
+    } else {
+        tr!("over {time}", time = time(place.saturating_sub(1)))
     }
 }
 

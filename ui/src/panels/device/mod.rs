@@ -44,10 +44,9 @@ const GRAPH: f32 = 84.0;
 const DIAL: f32 = 64.0;
 /// Drivers of the window's own mouse and pens.
 const OF_THE_WINDOW: [&str; 2] = ["pointer", "window"];
-/// A device of which nothing is heard for so long has left, ns.
+/// A device that has sent nothing for this time counts as unplugged, ns.
 const PRESENT_NS: u64 = 3_000_000_000;
 
-/// The panel.
 #[derive(Debug, Default)]
 pub(crate) struct DevicePanel {
     sliders: Sliders,
@@ -117,7 +116,7 @@ impl Panel for DevicePanel {
         devices.sort_by_key(|(name, device)| (-i64::from(priority(device)), (*name).clone()));
         let names: Vec<String> = devices.into_iter().map(|(name, _)| name.clone()).collect();
         for name in names {
-            // What it sensed is long.
+            // The description of its axes is long.
             let Some(device) = work.rig.live.devices.remove(&name) else {
                 continue;
             };
@@ -169,7 +168,7 @@ impl DevicePanel {
         }
     }
 
-    /// What the painter may change of a device, and its test page.
+    /// The settings of a device that the painter may change, and its test page.
     fn own_settings(
         &mut self,
         ui: &mut Ui,
@@ -212,14 +211,13 @@ impl DevicePanel {
                 .color(Color32::WHITE);
             let button = Button::new(words).fill(RED).min_size(vec2(0.0, 32.0));
             let key = work.preferences.keys.written(ui.ctx(), Action::ForceOff);
-            let hint = match key.is_empty() {
-                true => tr!("The device gives no force any more, at once").to_owned(),
-                false => {
-                    tr!(
-                        "The device gives no force any more, at once ({key}, for all devices)",
-                        key
-                    )
-                }
+            let hint = if key.is_empty() {
+                tr!("The device gives no force any more, at once").to_owned()
+            } else {
+                tr!(
+                    "The device gives no force any more, at once ({key}, for all devices)",
+                    key
+                )
             };
             if wide(ui, button).on_hover_text(hint).clicked() {
                 work.requests.force(name, ForceOrder::Off);
@@ -243,9 +241,10 @@ impl DevicePanel {
             }
         }
         let now_ns = work.rig.live.now_ns;
-        let most_n = match status.cap_n > 0.0 {
-            true => status.cap_n,
-            false => info.max_force_n,
+        let most_n = if status.cap_n > 0.0 {
+            status.cap_n
+        } else {
+            info.max_force_n
         };
         let force_n = device.forces.force_n(now_ns);
         ui.horizontal(|ui| {
@@ -317,16 +316,16 @@ fn moves(info: &StylusInfo, brushes: usize) -> String {
     }
 }
 
-/// Driver and rate.
 fn driven(info: &StylusInfo) -> String {
     let driver = &info.driver;
-    match info.rate_hz >= 1.0 {
-        true => tr!(
+    if info.rate_hz >= 1.0 {
+        tr!(
             "Driver “{driver}”, {rate} times a second",
             driver,
             rate = format_args!("{:.0}", info.rate_hz)
-        ),
-        false => tr!("Driver “{driver}”", driver),
+        )
+    } else {
+        tr!("Driver “{driver}”", driver)
     }
 }
 
@@ -360,15 +359,16 @@ fn numbers(ui: &mut Ui, force_n: Option<[f64; 3]>, most_n: f64, status: &StylusS
         given = format_args!("{:.0}", status.stiffness_n_m),
         asked = format_args!("{:.0}", status.asked_n_m)
     );
-    let motors = match status.resting {
-        true => tr!(
+    let motors = if status.resting {
+        tr!(
             "{percent} % hot, resting",
             percent = format_args!("{:.0}", 100.0 * status.motor_temperature)
-        ),
-        false => tr!(
+        )
+    } else {
+        tr!(
             "{percent} % hot",
             percent = format_args!("{:.0}", 100.0 * status.motor_temperature)
-        ),
+        )
     };
     Grid::new("numbers")
         .num_columns(2)

@@ -19,7 +19,7 @@ const MIN_GAP: f64 = 0.02;
 const GRID: f64 = 0.01;
 /// Most points of a curve.
 const MAX_POINTS: usize = 32;
-/// A drawn curve is shown for so long until the pen has it, s.
+/// Time for which a drawn curve is shown before the pen has taken it, s.
 const ANSWER_S: f64 = 6.0;
 
 /// Curves that are often wanted, by name.
@@ -128,16 +128,17 @@ fn point(ui: &Ui, id: Id, inner: Rect, at: [f64; 2]) -> (Response, Option<[f64; 
     let catch = Rect::from_center_size(place, vec2(2.0 * CATCH_RADIUS, 2.0 * CATCH_RADIUS));
     let response = ui.interact(catch, id, Sense::click_and_drag());
     let steps = arrow_steps(ui, &response);
-    let to = match response.dragged() {
-        true => response
+    let to = if response.dragged() {
+        response
             .interact_pointer_pos()
-            .map(|at| from_screen(inner, at)),
-        false => (steps != eframe::egui::Vec2::ZERO).then(|| {
+            .map(|at| from_screen(inner, at))
+    } else {
+        (steps != eframe::egui::Vec2::ZERO).then(|| {
             [
                 at[0] + GRID * f64::from(steps.x),
                 at[1] - GRID * f64::from(steps.y),
             ]
-        }),
+        })
     };
     (response, to)
 }

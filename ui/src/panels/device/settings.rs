@@ -32,7 +32,7 @@ impl Edits {
         let field = row(ui, tr!("Name"), |ui| {
             let width = ui.available_width();
             let field = ui.add(TextEdit::singleline(&mut name).desired_width(width));
-            field.on_hover_text(tr!("The device starts anew under the name that you type"))
+            field.on_hover_text(tr!("The device restarts under the name that you enter"))
         });
         if field.has_focus() {
             self.typed = Some((device.to_owned(), name));
@@ -102,7 +102,7 @@ pub(super) fn show(
         });
 }
 
-/// What each switch does.
+/// Switches of the device, with the meaning of each.
 fn switches(ui: &mut Ui, section: &DeviceSection) -> Option<Vec<String>> {
     let actions = section.actions();
     let mut chosen = None;

@@ -119,8 +119,9 @@ fn page(ui: &mut Ui, device: &Device, now_ns: u64) {
 fn pressed(switches: u32) -> String {
     let down = (0..32).filter(|bit| switches & (1 << bit) != 0);
     let numbers: Vec<String> = down.map(|bit| (bit + 1).to_string()).collect();
-    match numbers.is_empty() {
-        true => "-".to_owned(),
-        false => numbers.join(", "),
+    if numbers.is_empty() {
+        "-".to_owned()
+    } else {
+        numbers.join(", ")
     }
 }

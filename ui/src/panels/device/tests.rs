@@ -126,7 +126,7 @@ fn attached(name: &str, id: &str, permission: Permission) -> Attached {
     }
 }
 
-/// What is attached, and a rig with a tablet of the user's and a studio's phantom.
+/// Attached devices, and a rig with a tablet of the user's and a studio's phantom.
 fn listing(tablet: &str) -> DeviceListing {
     let tablet = DeviceSection {
         priority: 5,

@@ -33,7 +33,6 @@ const PICTURE: [f32; 2] = [60.0, 48.0];
 const INWARD: f32 = 12.0;
 const MOST_INWARD: usize = 5;
 
-/// The panel.
 #[derive(Default)]
 pub(crate) struct HistoryPanel {
     /// Name of the next version.
@@ -119,14 +118,15 @@ impl HistoryPanel {
             picture_of(ui, work, &mut self.textures, name);
             ui.with_layout(Layout::top_down(Align::Min), |ui| {
                 ui.horizontal(|ui| {
-                    let title = match version.here {
-                        true => RichText::new(name).strong(),
-                        false => RichText::new(name),
+                    let title = if version.here {
+                        RichText::new(name).strong()
+                    } else {
+                        RichText::new(name)
                     };
                     ui.add(eframe::egui::Label::new(title).truncate());
                     if version.here {
                         ui.label(RichText::new(tr!("here")).small())
-                            .on_hover_text(tr!("What is painted now goes on from this version"));
+                            .on_hover_text(tr!("Painting continues from this version"));
                     }
                 });
                 ui.horizontal(|ui| self.buttons(ui, work, name));
@@ -142,7 +142,7 @@ impl HistoryPanel {
                 ui,
                 tr!("Yes"),
                 &tr!("Delete {name}", name),
-                tr!("It cannot be had back"),
+                tr!("This cannot be undone"),
             );
             if yes.clicked() {
                 ask(work, VersionName::new(name).map(|name| Forget { name }));

@@ -1,4 +1,4 @@
-//! What an edit has done, for the notification of one whose effect may be out of view.
+//! Text of an edit's result, for the notification of one whose effect may be out of view.
 
 use maulstick_painting::edits::{Dry, GoTo, LoadFrom, Redo, Scrape, Undo};
 use maulstick_types::EditFields as _;
@@ -18,7 +18,7 @@ const PAST_TENSES: [(&str, &str); 6] = [
     (Scrape::NAME, tr_noop!("Scraped")),
 ];
 
-/// A request that is done, and what it was about; `None` for one whose effect is seen.
+/// Title of a completed request, and its subject; `None` for one with a visible effect.
 #[must_use]
 pub(crate) fn done(request: &Request, detail: &Detail) -> Option<String> {
     let done = past_tense(request)?;

@@ -50,7 +50,7 @@ fn rows(work: &PanelContext<'_>) -> Vec<Row> {
     rows
 }
 
-/// What the rows have pictures of.
+/// Subjects of the rows that have pictures.
 pub(super) fn pictured(work: &PanelContext<'_>) -> Vec<Pictured> {
     let rows = rows(work).into_iter();
     rows.map(|row| Pictured::Step(row.id)).collect()
@@ -128,9 +128,10 @@ fn line(
     let left = pos2(place.left() + GAP, place.center().y - 0.5 * PICTURE[1]);
     let seen = Rect::from_min_size(left, PICTURE.into());
     picture(ui, seen);
-    let colour = match row.done {
-        true => visuals.text_color(),
-        false => ui.visuals().weak_text_color(),
+    let colour = if row.done {
+        visuals.text_color()
+    } else {
+        ui.visuals().weak_text_color()
     };
     let width = place.right() - seen.right() - 3.0 * GAP;
     let font = FontId::proportional(13.0);

@@ -12,9 +12,12 @@ use crate::test_support::panel_bench::{Bench, harness, picture, rig, steps};
 use maulstick_client::state::PaintNode;
 
 fn landscape([red, green, blue]: [u8; 3]) -> Picture {
-    let pixel = |i: usize| match i / 40 < 18 {
-        true => [150, 190, 230],
-        false => [red, green, blue],
+    let pixel = |i: usize| {
+        if i / 40 < 18 {
+            [150, 190, 230]
+        } else {
+            [red, green, blue]
+        }
     };
     let rgb: Vec<u8> = (0..40 * 30).flat_map(pixel).collect();
     Picture::new([40, 30], rgb).expect("three bytes a pixel")
@@ -137,7 +140,7 @@ fn a_click_or_a_key_goes_to_a_step() {
     harness.run();
     let asked = [5, 8, 0].map(|step| Command::from(GoTo { step }));
     assert_eq!(harness.state_mut().asked(), asked);
-    // Where older steps are left out, the list does not reach back to the beginning.
+    // If older steps are left out, the list does not reach back to the beginning.
     let paint = harness.state_mut().rig.live.paint.as_mut().expect("a node");
     paint.status.undo = 40;
     harness.run();

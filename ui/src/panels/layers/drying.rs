@@ -12,7 +12,6 @@ use maulstick_ui_kit::rows::{Number, Sliders, choice, row};
 use super::region;
 use crate::widgets::context::{PanelContext, ask};
 
-/// Choice of region.
 const PLACES: [&str; 2] = [tr_noop!("Whole canvas"), tr_noop!("A part")];
 
 const SHARE: Number<'_> = Number::percent::<Share>(tr_noop!("How much"));

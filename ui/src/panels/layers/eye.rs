@@ -11,9 +11,10 @@ pub(super) fn show(ui: &mut Ui, is_open: bool) -> Response {
     let side = ui.spacing().interact_size.y;
     let (place, response) = ui.allocate_exact_size(vec2(side, side), Sense::click());
     let visuals = ui.style().interact(&response);
-    let colour = match is_open || response.hovered() {
-        true => visuals.fg_stroke.color,
-        false => ui.visuals().weak_text_color(),
+    let colour = if is_open || response.hovered() {
+        visuals.fg_stroke.color
+    } else {
+        ui.visuals().weak_text_color()
     };
     let stroke = Stroke::new(1.4, colour);
     let middle = place.center();
@@ -30,14 +31,11 @@ pub(super) fn show(ui: &mut Ui, is_open: bool) -> Response {
     }
     painter.add(Shape::line(lid(-1.0), stroke));
     painter.add(Shape::line(lid(1.0), stroke));
-    match is_open {
-        true => {
-            painter.circle_filled(middle, IRIS, colour);
-        }
-        false => {
-            let corner = vec2(HALF[0], HALF[1]);
-            painter.line_segment([middle - corner, middle + corner], stroke);
-        }
+    if is_open {
+        painter.circle_filled(middle, IRIS, colour);
+    } else {
+        let corner = vec2(HALF[0], HALF[1]);
+        painter.line_segment([middle - corner, middle + corner], stroke);
     }
     response
 }

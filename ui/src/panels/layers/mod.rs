@@ -30,7 +30,6 @@ const WAY: f32 = 84.0;
 
 const OPACITY: Number<'_> = Number::percent::<OpacityFactor>(tr_noop!("Opacity"));
 
-/// The panel.
 #[derive(Debug, Default)]
 pub(crate) struct LayersPanel {
     sliders: Sliders,
@@ -57,9 +56,7 @@ impl Panel for LayersPanel {
         let is_coming = self.is_coming(now_s, &layers, work);
         ui.horizontal(|ui| {
             ui.checkbox(&mut work.rig.show_wet, tr!("Highlight wet paint"))
-                .on_hover_text(tr!(
-                    "Wet paint is shown under a tint, so that it is told from dry paint"
-                ));
+                .on_hover_text(tr!("Tints wet paint, to distinguish it from dry paint"));
             if is_coming {
                 let layout = Layout::right_to_left(Align::Center);
                 ui.with_layout(layout, |ui| ui.spinner())
@@ -160,9 +157,10 @@ impl LayersPanel {
                 tr!("Show {layer}", layer = layer_name(layer)),
             )
         });
-        let button = button.on_hover_text(match is_shown {
-            true => tr!("Hide this layer; its relief stays"),
-            false => tr!("Show this layer again"),
+        let button = button.on_hover_text(if is_shown {
+            tr!("Hide this layer; its relief stays")
+        } else {
+            tr!("Show this layer again")
         });
         if !button.clicked() {
             return None;

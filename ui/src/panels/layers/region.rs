@@ -59,7 +59,7 @@ pub(super) fn show(ui: &mut Ui, region: &mut Region, size_m: [f64; 2], units: Un
     });
 }
 
-/// The map: a drag over it draws the part anew.
+/// The map: a drag over it draws that part again.
 fn map(ui: &mut Ui, region: &mut Region, size_m: [f64; 2]) {
     let scale = f64::from(MAP) / size_m[0].max(size_m[1]).max(1e-6);
     let size = vec2((size_m[0] * scale) as f32, (size_m[1] * scale) as f32);

@@ -61,7 +61,7 @@ impl LampUndo {
             self.asked = None;
         }
         let step = newest_step(rig);
-        // What was undone and is followed by another step cannot be redone.
+        // A step that was undone and is followed by another cannot be redone.
         let redo = rig.live.paint.as_ref().map_or(0, |node| node.status.redo);
         if redo == 0 && self.undone.last().is_some_and(|undone| undone.step != step) {
             self.undone.clear();

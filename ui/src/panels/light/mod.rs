@@ -43,7 +43,6 @@ const RELIEF: Number<'_> = Number::of::<Relief>(tr_noop!("Relief"), 2);
 const SOFTNESS: Number<'_> = Number::of::<Softness>(tr_noop!("Softness"), 2);
 const WAVELENGTHS: Number<'_> = Number::of::<Wavelengths>(tr_noop!("Samples"), 0);
 
-/// The panel.
 #[derive(Default)]
 pub(crate) struct LightPanel {
     asked: Pending<Light>,
@@ -101,7 +100,7 @@ impl Panel for LightPanel {
 }
 
 impl LightPanel {
-    /// Direction and strength of the lamp; `true` if the exposure is to be chosen anew.
+    /// Direction and strength of the lamp; `true` if the exposure has to be chosen again.
     fn lamp(&mut self, ui: &mut Ui, light: &mut Light) -> bool {
         let texture = self.ball(ui, light);
         ui.vertical_centered(|ui| {
@@ -125,7 +124,7 @@ impl LightPanel {
         })
     }
 
-    /// The ball under the lamp, drawn anew where the light is another.
+    /// The ball under the lamp, drawn again when the light changes.
     fn ball(&mut self, ui: &Ui, light: &Light) -> eframe::egui::TextureId {
         let known = self.sphere.as_ref();
         if known.is_none_or(|(drawn, _)| drawn != light) {

@@ -32,9 +32,10 @@ pub(super) fn show(ui: &mut Ui, ball: TextureId, direction: [f64; 3]) -> Option<
     let painter = ui.painter();
     let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
     painter.image(ball, place.shrink(2.0), whole, Color32::WHITE);
-    let rim = match response.has_focus() {
-        true => Stroke::new(2.0, ui.visuals().selection.stroke.color),
-        false => ui.visuals().widgets.noninteractive.bg_stroke,
+    let rim = if response.has_focus() {
+        Stroke::new(2.0, ui.visuals().selection.stroke.color)
+    } else {
+        ui.visuals().widgets.noninteractive.bg_stroke
     };
     painter.circle_stroke(place.center(), 0.5 * SIDE - 2.0, rim);
     let lamp = to_pad(place, moved.unwrap_or(direction));
@@ -67,9 +68,10 @@ fn of_disc([x, y]: [f64; 2]) -> [f64; 3] {
 /// The place on the disc of a direction.
 fn on_disc([x, y, z]: [f64; 3]) -> [f64; 2] {
     let length = (x * x + y * y + z * z).sqrt();
-    match length > 0.0 {
-        true => [x / length, y / length],
-        false => [0.0; 2],
+    if length > 0.0 {
+        [x / length, y / length]
+    } else {
+        [0.0; 2]
     }
 }
 

@@ -13,7 +13,6 @@ const GLOSS: f32 = 0.5;
 /// Exponent of its highlight.
 const SHARPNESS: i32 = 48;
 
-/// Draws it.
 #[must_use]
 pub(super) fn draw(light: &Light) -> ColorImage {
     let lamp = Lamp::new(&LampSetup {

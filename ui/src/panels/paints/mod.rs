@@ -21,11 +21,9 @@ use crate::widgets::context::PanelContext;
 /// A swatch: masstone at its left, tint at its right, points.
 const SWATCH: [f32; 2] = [44.0, 18.0];
 
-/// The panel.
 #[derive(Debug, Default)]
 pub(crate) struct PaintsPanel {
     swatches: Swatches,
-    /// The search text.
     search: String,
     /// The set whose tubes are shown; all of them where there is no such set.
     set: Option<String>,

@@ -40,9 +40,10 @@ impl PanelContext<'_> {
             return;
         };
         let wells = wells_of(mixtures, palette.cells, palette.cell_m);
-        let wells = match self.preferences.window.left_handed {
-            false => wells,
-            true => mirrored(&wells, size_m(palette)),
+        let wells = if self.preferences.window.left_handed {
+            mirrored(&wells, size_m(palette))
+        } else {
+            wells
         };
         match Wells::new(palette.id, wells) {
             Ok(edit) => self.requests.send(edit),

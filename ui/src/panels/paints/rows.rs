@@ -171,9 +171,10 @@ fn tube_row(ui: &mut Ui, work: &PanelContext<'_>, tube: &Tube) -> Option<Deed> {
             }
             for (place, set) in work.preferences.brushes.paint_sets.iter().enumerate() {
                 let held = set.paints.contains(&tube.text);
-                let words = match held {
-                    true => tr!("Out of '{set}'", set = set.name),
-                    false => tr!("Into '{set}'", set = set.name),
+                let words = if held {
+                    tr!("Out of '{set}'", set = set.name)
+                } else {
+                    tr!("Into '{set}'", set = set.name)
                 };
                 if ui.button(words).clicked() {
                     deed = Some(Deed::IntoSet(place, !held));

@@ -7,7 +7,6 @@ use crate::settings::paint_sets::PaintSet;
 use crate::settings::presets::check_name;
 use crate::widgets::context::PanelContext;
 
-/// The rows.
 #[derive(Debug, Default)]
 pub(super) struct SetRows {
     name: String,
@@ -83,7 +82,7 @@ impl SetRows {
                 }
             }
             let renew = ui.button(tr!("Renew"));
-            let hover = tr!("The set becomes what lies on the palette now.");
+            let hover = tr!("The set becomes the paints on the palette.");
             if renew.on_hover_text(hover).clicked() {
                 let name = work.preferences.brushes.paint_sets[place].name.clone();
                 work.preferences.brushes.paint_sets[place] = PaintSet::of(&name, &work.wells());

@@ -17,7 +17,6 @@ use crate::widgets::mixture_field;
 /// Width and height of a button with a sign, points.
 const SIGN: f32 = 20.0;
 
-/// The rows.
 #[derive(Debug, Default)]
 pub(super) struct WellRows {
     /// The well that the next paint goes into.
@@ -45,9 +44,10 @@ enum Sign {
 
 impl Sign {
     fn draw(self, ui: &Ui, on: &Response) {
-        let colour = match on.enabled() {
-            true => ui.style().interact(on).text_color(),
-            false => ui.visuals().weak_text_color(),
+        let colour = if on.enabled() {
+            ui.style().interact(on).text_color()
+        } else {
+            ui.visuals().weak_text_color()
         };
         let at = |x: f32, y: f32| on.rect.center() + vec2(x, y);
         let line = |from, to| {
@@ -151,12 +151,13 @@ impl WellRows {
         };
         let is_room = self.chosen.is_some() || count < MOST;
         let button = ui.add_enabled(is_room && !self.text.trim().is_empty(), Button::new(words));
-        let button = match is_room {
-            true => button,
-            false => button.on_disabled_hover_text(tr!(
+        let button = if is_room {
+            button
+        } else {
+            button.on_disabled_hover_text(tr!(
                 "The palette holds {most} mixtures: choose one to replace, or remove one.",
                 most = MOST
-            )),
+            ))
         };
         if button.clicked() || (enter && is_room) {
             match brush_load::read(&self.text, &work.rig.library) {

@@ -44,7 +44,6 @@ pub(crate) struct Bristles<'a> {
     pub width_m: f32,
     /// See `width_m`.
     pub taper: f32,
-    /// Their material.
     pub hair: Hair,
     /// Linear light of bristles in the light and in the depth of the tuft, as the display takes it.
     pub tones: [Vec3; 2],
@@ -52,7 +51,7 @@ pub(crate) struct Bristles<'a> {
     pub coat: Option<&'a PaintColour>,
 }
 
-/// The ribbons of a pose of so many strips, as one mesh.
+/// The ribbons of a pose with this number of strips, as one mesh.
 #[must_use]
 pub(crate) fn ribbons(
     pose: &HeadPose,

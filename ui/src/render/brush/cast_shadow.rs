@@ -22,7 +22,6 @@ const EDGE: f32 = 0.7;
 /// A board above the desk: its lower left corner, lower right and upper left one in the view, pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Board {
-    /// The corners.
     pub corners: [Vec2; 3],
     /// Radii of its corners, pixels: lower left, lower right, upper left, upper right.
     pub radii: [f32; 4],
@@ -31,9 +30,7 @@ pub(crate) struct Board {
 /// Part of the desk on which a shadow falls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum On {
-    /// All of it.
     All,
-    /// The board alone.
     Board(Board),
     /// Outside the board.
     Beside(Board),
@@ -56,7 +53,6 @@ pub(crate) struct Chain {
 
 /// From the frame of a surface to pixels of the view.
 pub(crate) struct Projection<'a> {
-    /// The view.
     pub view: &'a View,
     /// Pixels a point.
     pub pixels_per_point: f32,
@@ -81,7 +77,7 @@ impl Chain {
             view: area.into(),
             ..Self::zeroed()
         };
-        // The shader takes all nodes of its kind of chain: a short one goes on where it ends.
+        // The shader takes all nodes of its kind of chain: a short one is filled up with its end.
         let mut last = ([0.0; 4], 0.0);
         for i in 0..NODES {
             if let Some(shade) = shades.get(i) {
@@ -168,7 +164,6 @@ impl Chain {
     }
 }
 
-/// The passes.
 #[derive(Clone, Debug)]
 pub(crate) struct CastShadow {
     layout: wgpu::BindGroupLayout,
@@ -210,7 +205,7 @@ impl CastShadow {
         }
     }
 
-    /// Prepares a chain of so many discs to be drawn on the backdrop (`desk`; the bare desk without one).
+    /// Prepares a chain with this number of discs to be drawn on the backdrop (`desk`; the bare desk without one).
     #[must_use]
     pub(crate) fn cast(
         &self,

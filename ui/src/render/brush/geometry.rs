@@ -39,11 +39,9 @@ const FAR_M: f64 = 0.12;
 /// Material of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Material {
-    /// The ferrule.
     Metal,
     /// A groove of the ferrule, which crimps it to the handle.
     Groove,
-    /// The handle.
     Wood,
 }
 

@@ -21,9 +21,7 @@ const SEAM_WIDTH: f64 = 0.035;
 /// Linear colours of what a brush is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Finish {
-    /// The ferrule.
     pub nickel: Vec3,
-    /// The handle.
     pub lacquer: Vec3,
 }
 
@@ -143,7 +141,7 @@ pub(crate) fn handle(sections: &[Section], finish: &Finish, sight: &ViewLight<'_
     mesh
 }
 
-/// Angles around a section, so many as its size needs, with the seam among them.
+/// Angles around a section, in a number that fits its size, with the seam among them.
 fn turns(radius: f32) -> Vec<f64> {
     const FULL: f64 = 2.0 * std::f64::consts::PI;
     let count = (6.0 + 3.0 * radius.max(0.0)).min(40.0) as u32;
@@ -245,7 +243,7 @@ impl Tube<'_> {
             mesh.add_triangle(a, b, a + 1);
             mesh.add_triangle(b, b + 1, a + 1);
             let middle = self.middle(part, turn);
-            // Where the face beside it looks away, and where the tube ends, is the silhouette.
+            // The silhouette is where the neighbouring face looks away, and where the tube ends.
             if !faces[next] {
                 soften(mesh, [b, b + 1], middle);
             }

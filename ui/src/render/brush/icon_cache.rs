@@ -15,7 +15,7 @@ use maulstick_ui_kit::display_transform::DisplayTransform;
 use crate::input::brush_choice::read;
 use crate::render::brush::thumbnail::brush_thumbnail;
 
-/// Largest number of cached textures; beyond, all are drawn anew.
+/// Largest number of cached textures; beyond it, all are dropped and drawn again.
 const KEPT: usize = 128;
 /// Share of a picture's height that the head takes at most, and of its width.
 const HEAD: [f64; 2] = [0.9, 0.5];

@@ -87,8 +87,8 @@ impl PaintColour {
         self.load_share
     }
 
-    /// Colours of the tip of a head in so many columns from left to right; a column without bristles has the colour of
-    /// the one before it, or of the first that has any.
+    /// Colours of the tip of a head in `columns` columns from left to right; a column without bristles has the colour
+    /// of the one before it, or of the first that has any.
     #[must_use]
     pub fn across(&self, head: &Head, columns: usize) -> Vec<Vec3> {
         let mut sums = vec![(Vec3::ZERO, 0.0); columns];
@@ -160,9 +160,12 @@ pub(crate) mod tests {
     #[test]
     fn the_tip_is_seen_from_left_to_right() {
         let head = Head::of(&BrushFile::library("flat").expect("flat"));
-        let strip = |root: &[f32; 2]| match root[0] < 0.0 {
-            true => [[0.0; 4], [1.0, 0.0, 0.0, 1.0]],
-            false => [[0.0; 4], [0.0, 0.0, 1.0, 1.0]],
+        let strip = |root: &[f32; 2]| {
+            if root[0] < 0.0 {
+                [[0.0; 4], [1.0, 0.0, 0.0, 1.0]]
+            } else {
+                [[0.0; 4], [0.0, 0.0, 1.0, 1.0]]
+            }
         };
         let samples: Vec<_> = head.roots().iter().flat_map(strip).collect();
         let coat = coat_of(head.strips() as u32, 2, &samples);

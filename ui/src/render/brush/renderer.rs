@@ -42,7 +42,7 @@ pub struct Below<'a> {
 #[derive(Debug, Default)]
 struct Kept {
     slots: Vec<ShadowSlot>,
-    /// The paint on it, and the same on a head of so many strips, as the display takes it.
+    /// The paint on it, and the same on a head with this number of strips, as the display takes it.
     coat: Option<(Arc<PaintColour>, usize, PaintColour)>,
 }
 

@@ -152,7 +152,7 @@ fn the_shader_lights_as_the_export_does() {
         let own = lamp(toward, exposure, softness);
         let expected = rough.expected(&own, gamut);
         let shown = rough.on_device(&own, gamut, [0; 2]);
-        // A window that goes on from the other side of its textures has the same picture.
+        // A window that continues at the other side of its textures has the same picture.
         let moved = rough.on_device(&own, gamut, [3 * SIDE as u32 + 20, 61]);
         assert_eq!(farthest(&shown, &moved), 0.0);
         let off = farthest(&shown, &expected);

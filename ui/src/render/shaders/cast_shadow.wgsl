@@ -4,8 +4,8 @@
 const NODES: u32 = 24u;
 // Luminance of the ground from which a shadow begins to darken, and where it does nothing else.
 const DARK_GROUND: vec2<f32> = vec2<f32>(0.015, 0.075);
-// What dark ground is lightened to, as the target takes encoded values, and how much less than light
-// ground is darkened.
+// Value to which dark ground is lightened, as the target takes encoded values, and share to which light ground is
+// darkened.
 const LIFT: f32 = 0.72;
 const LIFTED: f32 = 0.8;
 
@@ -29,10 +29,10 @@ struct Chain {
     shades: array<vec4<f32>, NODES>,
 }
 
-// Whether the target takes encoded values; one that encodes by itself takes linear light.
+// True if the target takes encoded values; one that encodes them in hardware takes linear light.
 override encoded: bool = true;
-// Nodes of the chain, the same for each: a loop to a uniform makes some drivers compile the shader
-// anew for every draw.
+// Nodes of the chain, the same for each: a loop to a uniform makes some drivers compile the shader again for every
+// draw.
 override count: u32;
 
 @group(0) @binding(0) var<uniform> chain: Chain;
@@ -61,8 +61,8 @@ fn disc(at: vec2<f32>, node: vec4<f32>, shade: f32) -> f32 {
     return shade * shadow_of_bar(distance(at, node.xy), node.z, node.w);
 }
 
-// The darkest of the discs and of those between neighbours. A disc that holds its neighbour is not covered by what lies
-// between them, so each is taken by itself, too.
+// The darkest of the discs and of the cones between neighbours. A disc that contains its neighbour is not covered by
+// the cone between them, so each disc is taken alone, too.
 fn darkness(at: vec2<f32>) -> f32 {
     var b = chain.nodes[0];
     var b_shade = chain.shades[0].x;
@@ -79,7 +79,7 @@ fn darkness(at: vec2<f32>) -> f32 {
     return dark;
 }
 
-// How much of a pixel the board covers.
+// Share of a pixel that the board covers.
 fn on_board(at: vec2<f32>) -> f32 {
     let off = at - chain.corner_of_board;
     let place = vec2<f32>(dot(off, chain.board.xy), dot(off, chain.board.zw));

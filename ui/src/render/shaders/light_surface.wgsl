@@ -58,21 +58,21 @@ struct Window {
 
 // Share of the light that comes from all around.
 override ambient: f32;
-// Share of the light that the surface reflects by itself, and how much dimmer the room is below.
+// Share of the light that the surface itself reflects, and how much dimmer the room is below.
 override surface: f32;
 override dimming: f32;
 // Roughness of the glossiest film, and of the most matte ground.
 override smoothest: f32;
 override roughest: f32;
-// Halvings of the search for the gamut's edge. No uniform: a loop to one makes some drivers compile the
-// shader anew for every draw.
+// Halvings of the search for the gamut's edge. No uniform: a loop to one makes some drivers compile the shader again
+// for every draw.
 override halvings: u32;
 // Least denominator of a horizon.
 override least: f32;
 // Share of the way to the edge of the gamut that is left as it is; how much lightness goes for colour.
 override knee: f32;
 override for_colour: f32;
-// How colours come into the gamut.
+// True if colours are moved softly into the gamut.
 override soft: bool;
 
 @group(0) @binding(0) var<uniform> lamp: Lamp;
@@ -156,7 +156,7 @@ fn spread(spot: Spot) -> vec3<f32> {
     return vec3<f32>(xx * xx + xy * xy, (xx + yy) * xy, yy * yy + xy * xy) * scale;
 }
 
-// What comes to a facet from one direction over a horizon.
+// Light that comes to a facet from one direction over a horizon.
 fn above(tangent: f32, facing: f32, up: f32) -> f32 {
     let square = 1.0 / (1.0 + tangent * tangent);
     let cosine = sqrt(square);
@@ -182,7 +182,7 @@ fn open_sky(spot: Spot, n: vec3<f32>) -> f32 {
     return clamp(sum * (2.0 / f32(DIRECTIONS)), 0.0, 1.0);
 }
 
-// What it receives with the light that surroundings of these albedos throw back.
+// Light that it receives, with the light that surroundings of these albedos throw back.
 fn bounced(open: f32, albedo: vec3<f32>) -> vec3<f32> {
     let a = 2.0404 * albedo - 0.3324;
     let b = -4.7951 * albedo + 0.6417;

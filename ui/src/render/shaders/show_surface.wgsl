@@ -10,7 +10,7 @@ struct Place {
     view: vec2<f32>,
     // Half the distance of the samples of a pixel, in shares of the surface; 0 for one sample.
     spread: vec2<f32>,
-    // How far the shadow of a board that lies over others reaches, pixels; 0 for a canvas. Its strength.
+    // Reach of the shadow of a board that lies over others, pixels (0 for a canvas), and its strength.
     shade: vec2<f32>,
     // Depth of the corner, and what the sides add to it; 1 is that of the desk.
     depth: vec4<f32>,
@@ -24,13 +24,13 @@ struct Place {
     base: Region,
 }
 
-// What a sheet shows of the surface.
+// Part of the surface that a sheet shows.
 struct Region {
     // Cells of the surface at the sheet's level: a coarse level's last cells reach beyond it.
     extent: vec2<f32>,
     // The same in whole cells.
     texels: vec2<f32>,
-    // Texels of the sheet, which goes on from its other side.
+    // Texels of the sheet, which continues at its other side.
     size: vec2<f32>,
     // The cells that may be shown.
     low: vec2<f32>,
@@ -38,9 +38,9 @@ struct Region {
     pad: vec2<f32>,
 }
 
-// Whether the target takes encoded values; one that encodes by itself takes linear light.
+// True if the target takes encoded values; one that encodes them in hardware takes linear light.
 override encoded: bool = true;
-// Whether the display has a profile of its own: what it is sent for encoded light is in the cube.
+// True if the display has a profile of its own: the cube holds the values that it is sent for encoded light.
 override foreign: bool = false;
 // Grey of the desk, as the target takes it.
 override grey: f32 = 0.0;
@@ -132,7 +132,7 @@ fn linear(encoded_light: vec3<f32>) -> vec3<f32> {
     return select(high, encoded_light / 12.92, encoded_light <= vec3<f32>(0.04045));
 }
 
-// What the target takes for linear light of the gamut.
+// Values that the target takes for linear light of the gamut.
 fn sent(light: vec3<f32>) -> vec3<f32> {
     if !foreign {
         if encoded {

@@ -8,12 +8,12 @@ struct Place {
     view: vec2<f32>,
     // Depth of the corner, and what the sides add to it; 1 is that of the desk.
     depth: vec4<f32>,
-    // How much of the picture is seen, 0 to 1.
+    // Opacity of the picture, 0 to 1.
     strength: f32,
     pad: f32,
 }
 
-// Whether the target takes encoded values; one that encodes by itself takes linear light.
+// True if the target takes encoded values; one that encodes them in hardware takes linear light.
 override encoded: bool = true;
 
 @group(0) @binding(0) var<uniform> place: Place;

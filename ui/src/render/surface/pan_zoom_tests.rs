@@ -135,7 +135,7 @@ impl Easel {
         }
     }
 
-    /// What a window shows.
+    /// Draws a window, and returns its pixels.
     fn drawn(&self, view: &mut SurfaceView, look: &View) -> Vec<u8> {
         view.light(&self.gpu, &self.passes, &lamp(), self.surface.cell_m);
         let target = target(&self.gpu, VIEW);

@@ -208,6 +208,6 @@ fn a_brush_has_the_paint_that_was_told_newest() {
         Some(Some((glam::Vec3::X, 0.5))),
         "a fault would pass"
     );
-    // What does not fit shows a bare brush.
+    // A look that does not fit shows a bare brush.
     assert_eq!(told(&mut rig, &look_of(2, 1, &[red])), None);
 }

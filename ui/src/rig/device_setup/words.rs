@@ -65,7 +65,7 @@ pub(crate) fn fit_event(event: &FitEvent) -> String {
             angle = format_args!("{:.1}", fit.angle_rad.to_degrees())
         ),
         FitEvent::Scaled { scale, off_m } => tr!(
-            "The canvas is {scale} times as large; at worst a corner lies {off} mm off",
+            "The canvas is {scale} times as large; at worst a corner is off by {off} mm",
             scale = format_args!("{scale:.2}"),
             off = format_args!("{:.1}", 1e3 * off_m)
         ),

@@ -1,4 +1,4 @@
-//! The table and the JSON of what is found.
+//! The table and the JSON of the findings.
 
 use std::path::PathBuf;
 
@@ -115,7 +115,7 @@ fn the_devices_of_a_rig_are_listed_with_their_trouble() {
             "left        pen     main   0         in use",
             "right       pen     main   0         it is unplugged",
             "arm         pen     main   0         there is no libHD.so",
-            "cup         pen     main   0         does not run: the rig's terminal says why",
+            "cup         pen     main   0         does not run: see its messages in the rig's terminal",
         ]
     );
     assert_eq!(in_rig(Some(&[])).lines().count(), 1);

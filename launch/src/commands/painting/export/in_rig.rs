@@ -12,10 +12,9 @@ use crate::commands::open::LONGEST;
 use crate::commands::say;
 use maulstick_painting_setup::outputs::{Relayed, UsedFile, check_outputs, named_by};
 
-/// Has the painting written as it is now.
+/// Writes the current painting through the rig.
 ///
-/// # Errors
-/// A [`UserError`] where it cannot be written, where another export goes on, or where no rig runs.
+/// # Errors A [`UserError`] where it cannot be written, where another export is running, or where no rig runs.
 pub(super) fn run(options: &ExportOptions) -> Result<i32, UserError> {
     let client = Client::open(&options.target)?;
     let Some(file) = &options.output else {
@@ -28,7 +27,7 @@ pub(super) fn run(options: &ExportOptions) -> Result<i32, UserError> {
         .into_iter()
         .chain(document.map(|path| UsedFile::painting(path)))
         .collect();
-    // A name without a known format is refused by the node.
+    // The node rejects a name without a known format.
     let kind = options.known_format(file).map_or(Kind::Own, kind_of);
     check_outputs(&[UsedFile::new("the export", file).of(kind)], &inputs)?;
     let file = Relayed::new(file, kind)?;

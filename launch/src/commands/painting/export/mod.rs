@@ -77,7 +77,7 @@ impl ExportOptions {
         })
     }
 
-    /// That format; `None` where nothing says it.
+    /// The requested format; `None` if neither option nor name gives one.
     fn known_format(&self, out: &Path) -> Option<Format> {
         match &self.format {
             Some(name) => Format::named(name),
@@ -97,9 +97,8 @@ impl ExportOptions {
 
 /// Writes a painting for other programs.
 ///
-/// # Errors
-/// A [`UserError`] where the painting cannot be read or the file not be written, where another export of the rig goes
-/// on, or where no rig runs.
+/// # Errors A [`UserError`] where the painting cannot be read or the file not be written, where another export of the
+/// rig is running, or where no rig runs.
 pub(super) fn run(options: &ExportOptions) -> Result<i32, UserError> {
     match (&options.file, &options.output) {
         (Some(file), Some(out)) => in_file::run(options, [file, out]),

@@ -55,7 +55,7 @@ impl FilmKind {
     }
 }
 
-/// Takes the frames of a film, one after the other.
+/// Receiver of the frames of a film.
 type Add<'a> = dyn FnMut(&Picture) -> Result<(), UserError> + 'a;
 
 /// File of a film that can be written.
@@ -67,10 +67,9 @@ pub(super) struct FilmFile {
 }
 
 impl FilmFile {
-    /// Sees, before the work that fills it, that a film of `painting` can be written.
+    /// Checks, before the work that fills it, that a film of `painting` can be written.
     ///
-    /// # Errors
-    /// A [`UserError`] where it cannot, or where ffmpeg is missing.
+    /// # Errors A [`UserError`] where it cannot, or where ffmpeg is missing.
     pub(super) fn new(
         kind: FilmKind,
         path: &Path,
@@ -102,10 +101,9 @@ impl FilmFile {
         })
     }
 
-    /// Writes a film of frames of so many pixels, which `fill` hands over: whole, or not at all.
+    /// Writes a film of frames of this size from `fill`, completely or not at all.
     ///
-    /// # Errors
-    /// The error of `fill`, or where the film cannot be written.
+    /// # Errors The error of `fill`, or where the film cannot be written.
     pub(super) fn write(
         &self,
         size: [usize; 2],
@@ -171,12 +169,12 @@ fn no_ffmpeg(error: &Error) -> UserError {
 /// A video that ffmpeg encodes.
 struct Video {
     ffmpeg: Child,
-    /// What it says of errors.
+    /// Its messages about errors.
     said: File,
 }
 
 impl Video {
-    /// Begins a video of frames of so many pixels across and down, in BT.709, which players take for granted.
+    /// Begins a video of frames of this size, pixels across and down, in BT.709, which players assume.
     fn begin(to: &Path, size: [usize; 2], fps: u32) -> Result<Self, Error> {
         let said = tempfile::tempfile()?;
         let [width, height] = size;
@@ -223,7 +221,7 @@ impl Video {
             None => Ok(()),
         };
         match written {
-            // It has ended, and said why.
+            // It has ended, with a reason.
             Err(error) if error.kind() == ErrorKind::BrokenPipe => self.end(),
             written => written,
         }
@@ -245,7 +243,7 @@ impl Video {
 
 impl Drop for Video {
     fn drop(&mut self) {
-        // It may have ended long ago.
+        // It may have ended already.
         self.ffmpeg.kill().ok();
         self.ffmpeg.wait().ok();
     }
@@ -294,7 +292,7 @@ mod tests {
                 .write([4, 2], fill)
                 .expect("written");
             assert!(path.exists());
-            // Only a film gives way, and no folder with files.
+            // Only a film is replaced, and no folder with files.
             assert_eq!(film().is_ok(), kind == FilmKind::Gif);
         }
         assert_eq!(std::fs::read_dir(folder.path()).expect("there").count(), 2);

@@ -23,7 +23,7 @@ use maulstick_painting_setup::refused;
 
 /// Longest time for which the finished painting is shown at the end, s.
 const HOLD_S: f64 = 2.0;
-/// Share of a film for which it is shown at most.
+/// Greatest share of a film for its still end.
 const HOLD_SHARE: f64 = 0.2;
 /// Lengths of a film, s.
 const SECONDS: std::ops::RangeInclusive<f64> = 0.1..=3600.0;

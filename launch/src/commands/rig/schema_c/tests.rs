@@ -13,7 +13,7 @@ fn in_tree(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
 }
 
-/// What `tests/c/golden.c` prints of the golden bytes, with this header.
+/// Output of `tests/c/golden.c` for the golden bytes, with this header.
 fn printed(header: &str) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("maulstick.h"), header).expect("written");

@@ -124,7 +124,7 @@ impl View {
         panic!("it does not settle: {:?}", self.plan);
     }
 
-    /// Whether a sheet holds the newest of all that it says it holds.
+    /// True if a sheet holds the newest version of every tile that it lists.
     fn is_right(&self, node: &Node, part: Part) -> bool {
         let atlas = self.plan.atlas(part);
         let held = atlas.held;

@@ -27,8 +27,8 @@ impl BrushModel {
         tuned(&tuples(&self.file), self.tuned)
     }
 
-    /// The head as it is pressed now, in the desk frame, and how its force goes with depth: one more
-    /// solve, half a millimetre deeper. None in the air.
+    /// Contact of the head in its current pose, in the desk frame, and the change of its force with depth, from one
+    /// more solve half a millimetre deeper; `None` in the air.
     #[must_use]
     pub fn press(&mut self) -> Option<Press> {
         let tracked = self

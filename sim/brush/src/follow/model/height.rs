@@ -1,4 +1,4 @@
-//! The height at which a pen holds its brush.
+//! Height at which a pen holds its brush.
 
 use glam::DVec3;
 use maulstick_num::geometry::Rigid;
@@ -7,13 +7,13 @@ use maulstick_types::stylus::{StylusPose, StylusSample};
 use super::BrushModel;
 use crate::desk::{HOVER_M, Plane};
 
-/// Rises of a hovering brush at most: from over a tilted canvas a joint may come over the palette.
+/// Greatest number of rises of a hovering brush: from over a tilted canvas a joint may come over the palette.
 const RISES: usize = 4;
-/// Surfaces steeper to each other than this cosine are no ground to hover over.
+/// Least cosine between two surfaces over which one brush may hover.
 const LEAST_COSINE: f64 = 0.1;
 
 impl BrushModel {
-    /// Holds the brush of a pen as high as its sample and its own head ask for; a handle that is measured stays.
+    /// Sets the height of a pen's brush from its sample and head; a measured handle stays where it is.
     pub(super) fn hold(&self, brush: &mut Rigid, sample: &StylusSample, plane: &Plane) {
         if !matches!(sample.pose, StylusPose::Contact { .. }) {
             return;
@@ -42,8 +42,8 @@ impl BrushModel {
         joints.map(|joint| joint.z).fold(f64::INFINITY, f64::min)
     }
 
-    /// Lifts the brush of a pen in the air until each joint of its head is [`HOVER_M`] above what lies under it: a wide
-    /// head that leans reaches lower than its middle, and to the palette beside the canvas.
+    /// Lifts the brush of a pen in the air until each joint of its head is [`HOVER_M`] above what lies under it: a
+    /// wide leaning head reaches lower than its middle, and onto the palette beside the canvas.
     fn hover(&self, brush: &mut Rigid, plane: &Plane) {
         let Some(desk) = &self.desk else { return };
         let up = plane.normal();

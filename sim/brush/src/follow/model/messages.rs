@@ -7,7 +7,7 @@ use maulstick_types::{Flags, Origin};
 use super::BrushModel;
 
 impl BrushModel {
-    /// As [`follow`](Self::follow), as a whole message.
+    /// The solves of [`follow`](Self::follow) as one message.
     pub fn state(
         &mut self,
         origin: Origin,
@@ -19,8 +19,8 @@ impl BrushModel {
         message(origin, device_seq, solves)
     }
 
-    /// As [`state`](Self::state), for a sample of a take with the flags of its header: a faulty sample is passed over, and a
-    /// pen that still waits at the [last](Flags::LAST) one is set down.
+    /// [`state`](Self::state) for a sample of a take with the flags of its header: a faulty sample is skipped, and a
+    /// pen still waiting at the [last](Flags::LAST) sample is set down.
     pub fn state_in_take(
         &mut self,
         origin: Origin,
@@ -39,7 +39,7 @@ impl BrushModel {
         message(origin, device_seq, solves)
     }
 
-    /// As [`finish`](Self::finish), as a whole message of the take's last sample.
+    /// The solves of [`finish`](Self::finish) as one message of the take's last sample.
     pub fn finish_take(&mut self, origin: Origin, device_seq: u64) -> Option<BrushState> {
         let solves = self.finish();
         message(origin, device_seq, solves)

@@ -6,20 +6,19 @@ use super::{BrushModel, TrackedBrush};
 use crate::desk::Plane;
 use crate::handle_path::{HandlePath, PathSegment, Sampled};
 
-/// A touching brush is solved each time its handle has moved so far, and again between where a joint in contact
-/// moves [farther](FARTHEST_M), m: about as finely as paint is stepped. In between it is interpolated.
+/// Motion of the handle between two solves of a touching brush, m. In between it is interpolated.
 const SOLVE_M: f64 = 0.175e-3;
-/// See [`SOLVE_M`].
+/// Motion of a joint in contact above which the step is halved, m: about as finely as paint is stepped.
 const FARTHEST_M: f64 = 0.25e-3;
-/// Solves between two samples at most, where these are less than [`MOST_SOLVES_NS`] apart and no pointer leaps.
+/// Greatest number of solves between two samples less than [`MOST_SOLVES_NS`] apart, unless a pointer leaps.
 const MOST_SOLVES: f64 = 64.0;
-/// Time for which [`MOST_SOLVES`] are enough, ns.
+/// Time for which [`MOST_SOLVES`] suffice, ns.
 const MOST_SOLVES_NS: f64 = 1e8;
-/// Greatest distance between two solves of a pointer that leaps, m of the surface.
+/// Greatest distance between two solves of a leaping pointer, m of the surface.
 const APART_M: f64 = 1.2e-3;
-/// Solves between two samples at most, however far it leaps.
+/// Greatest number of solves of one leap.
 const MOST_OF_A_LEAP: f64 = 1024.0;
-/// Largest number of times that a piece of the path is halved.
+/// Greatest number of times that a piece of the path is halved.
 const SPLITS: u32 = 2;
 
 impl BrushModel {
@@ -29,7 +28,7 @@ impl BrushModel {
         HandlePath::new(before, newest, here, self.file.length_m())
     }
 
-    /// The brush that goes `way_m` to a sample at `event_ns`; none where it goes too fast, which is counted.
+    /// The brush after `way_m` up to a sample at `event_ns`; `None` where it is too fast, which is counted.
     pub(super) fn slow_enough(
         &mut self,
         tracked: Option<TrackedBrush>,
@@ -42,7 +41,7 @@ impl BrushModel {
         passes.then_some(tracked)
     }
 
-    /// Solves a touching brush at each step of its path to a sample, and gives a preview of it there.
+    /// Solves a touching brush at each step of its path to a sample, with a preview at the sample.
     pub(super) fn go(
         &mut self,
         tracked: &mut TrackedBrush,
@@ -89,7 +88,7 @@ impl BrushModel {
         solves
     }
 
-    /// A touching brush as it is at a sample, beyond its last step. It stays where that was.
+    /// Preview of a touching brush at a sample beyond its last step; the stored state stays at that step.
     pub(super) fn preview(
         &mut self,
         tracked: &mut TrackedBrush,
@@ -104,8 +103,8 @@ impl BrushModel {
         preview
     }
 
-    /// Solves the end of a piece of the path, and first its middle where a joint in contact would move more than a
-    /// cell.
+    /// Solves the end of a piece of the path; before it the middle, where a joint in contact would otherwise move
+    /// more than a cell.
     fn walk(
         &mut self,
         tracked: &mut TrackedBrush,

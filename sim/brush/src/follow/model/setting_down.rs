@@ -1,9 +1,9 @@
-//! A pen that is set down: its first samples wait until it is known where it goes.
+//! A pen that is set down: its first samples wait until its direction is known.
 //!
-//! A pressed pen gives a point and a pressure, and not how the hand came there. A head that is lowered straight down
-//! spreads, or buckles to any side, and is dragged round as soon as the hand moves: the stroke would begin with an anvil
-//! or a hook. So what the brush does waits for a bit of way, and the head is then laid down as one that has come along
-//! it: unseen, over a run-up before the first point. A pen that rests prints where it is.
+//! A pressed pen gives a point and a pressure, but not how the hand came there. A head that is lowered straight down
+//! spreads, or buckles to any side, and is dragged round as soon as the hand moves: the stroke would begin with an
+//! anvil or a hook. So the brush waits for a short path; the head is then laid down, unseen, over a run-up along that
+//! direction before the first point. A pen that rests prints where it is.
 
 use glam::DVec2;
 use maulstick_types::brush::{Solve, solve_flags};
@@ -16,39 +16,39 @@ use crate::head_solver::SolvedHead;
 use crate::lead::Lead;
 use crate::mark::point_of;
 
-/// Way of the point after which the direction of a stroke is known, m.
+/// Path of the point after which the direction of a stroke is known, m.
 const KNOWN_M: f64 = 1e-3;
-/// Way that gives a direction after [`TELLS_NS`], m.
+/// Path that gives a direction once [`TELLS_NS`] have passed, m.
 const TELLING_M: f64 = 0.2e-3;
-/// See [`TELLING_M`], ns.
+/// Time after which [`TELLING_M`] suffices, ns.
 const TELLS_NS: u64 = 50_000_000;
-/// Longest time for which a pen that rests waits, ns: then it is a dab.
+/// Longest wait of a resting pen, ns; then it is a dab.
 const RESTS_NS: u64 = 100_000_000;
-/// Samples that wait at most: more than a device of 8 kHz gives in [`RESTS_NS`].
+/// Greatest number of waiting samples: more than a device of 8 kHz gives in [`RESTS_NS`].
 const MOST_WAITING: usize = 1024;
-/// Length of a run-up, by the length of the head and how deep it is pressed.
+/// Length of a run-up: a share of the head's length, plus a multiple of the pressed depth.
 const RUN_UP: (f64, f64) = (0.15, 3.0);
-/// Share of a run-up in which the head comes down.
+/// Share of a run-up in which the head descends.
 const COMES_DOWN: f64 = 0.5;
-/// Greatest distance between two solves of a run-up, m, and most of them.
+/// Greatest distance between two solves of a run-up, m.
 const STRIDE_M: f64 = 0.5e-3;
-/// See [`STRIDE_M`].
+/// Greatest number of solves of a run-up; see [`STRIDE_M`].
 const MOST_STRIDES: f64 = 64.0;
 
-/// Samples of a pen that was set down and whose direction is not known.
+/// Samples of a pen that was set down and whose direction is not yet known.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Waiting {
     samples: Vec<Sampled>,
     begins: Begins,
 }
 
-/// Approach of a brush to a contact.
+/// Start of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Begins {
     /// From the air.
     #[default]
     GoesOn,
-    /// Anew, where nothing leads from the pose before.
+    /// Anew, without a connection to the pose before.
     Anew,
 }
 
@@ -58,7 +58,7 @@ impl Waiting {
         self.samples.is_empty()
     }
 
-    /// Direction of a stroke to `here`; `None` while it may still be found out. Zero is that of a pen that rests.
+    /// Direction of a stroke to `here`; `None` while it may still become known, zero for a resting pen.
     fn direction(&self, here: &Sampled) -> Option<DVec2> {
         let first = self.samples.first()?;
         let way = point_of(&here.pose) - point_of(&first.pose);
@@ -75,7 +75,7 @@ impl Waiting {
         }
     }
 
-    /// Direction of a way that ends before it is known.
+    /// Direction of a path that ends before [`KNOWN_M`].
     fn told(&self, way: DVec2) -> DVec2 {
         if way.length() >= TELLING_M {
             way.normalize_or_zero()
@@ -84,8 +84,8 @@ impl Waiting {
         }
     }
 
-    /// Direction of the place where the way from the first point to `way` beside it is [`KNOWN_M`] long: however often
-    /// it was sampled.
+    /// Direction of the point at which the path from the first point to `way` reaches [`KNOWN_M`], whatever the
+    /// sample rate.
     fn known(&self, way: DVec2) -> DVec2 {
         let (Some(first), Some(last)) = (self.samples.first(), self.samples.last()) else {
             return DVec2::ZERO;
@@ -101,8 +101,8 @@ impl Waiting {
 }
 
 impl BrushModel {
-    /// Sets down a pen that still waits, when no sample will give its direction any more; the brush continues from there.
-    /// Empty where none waits.
+    /// Sets down a pen that still waits, when no sample will give its direction any more; the brush continues from
+    /// there. Empty where none waits.
     #[must_use]
     pub fn finish(&mut self) -> Vec<Solve> {
         let Some(mut tracked) = self.tracked.take() else {
@@ -120,14 +120,14 @@ impl BrushModel {
         solves
     }
 
-    /// Forgets where the brush was; a pen that still waits is set down before.
+    /// Forgets the position of the brush, after setting down a pen that still waits.
     pub(super) fn give_up(&mut self) -> Vec<Solve> {
         let solves = self.finish();
         self.tracked = None;
         solves
     }
 
-    /// Begins to wait with a pen that comes down at `here`; how it would land, as a preview. `None` where it touches
+    /// Begins to wait with a pen that comes down at `here`, and previews its landing. `None` where it touches
     /// nothing, or does not come down.
     pub(super) fn begin_to_wait(
         &mut self,
@@ -153,8 +153,7 @@ impl BrushModel {
         Some(solve)
     }
 
-    /// Waits with one more sample, and gives how the brush would land there as a preview; `None` where it need not wait
-    /// any longer.
+    /// Waits with one more sample, and previews the landing there; `None` where the wait is over.
     pub(super) fn wait(
         &mut self,
         tracked: &mut TrackedBrush,
@@ -175,8 +174,8 @@ impl BrushModel {
         Some(solve)
     }
 
-    /// Sets down a brush that has waited, toward `here` if it continues pressed, and goes the way of the samples that
-    /// waited, with a preview at the last of them.
+    /// Sets down a waiting brush, toward `here` if it is still pressed, and follows the samples that waited, with a
+    /// preview at the last of them.
     pub(super) fn set_down(
         &mut self,
         tracked: &mut TrackedBrush,
@@ -216,8 +215,7 @@ impl BrushModel {
         solves
     }
 
-    /// Solves a brush that touched nothing, and comes down at a sample as one that has been drawn there in the
-    /// direction `toward`, a unit vector.
+    /// Solves a brush that comes down at a sample after an approach in the direction `toward`, a unit vector.
     pub(super) fn land_along(
         &mut self,
         tracked: &mut TrackedBrush,
@@ -231,7 +229,7 @@ impl BrushModel {
         solve
     }
 
-    /// Bends a head as the way to a sample would: it comes down on an endless plane and is drawn along.
+    /// Bends a head as its approach to a sample would: it comes down on an endless plane and is drawn along.
     fn run_up(&mut self, tracked: &mut TrackedBrush, here: Sampled, toward: DVec2) {
         let (by_length, by_depth) = RUN_UP;
         let depth_m = (-self.lowest_at_rest(&here.pose)).max(0.0);

@@ -223,7 +223,7 @@ proptest! {
             let feel = model.stiffness().k1_n;
             prop_assert!(feel.is_finite() && feel > 0.0);
         }
-        // Whatever was before, a brush that is lifted and put down again bends as it should.
+        // A lifted brush that is put down again bends independently of what was before.
         let mut last = Vec::new();
         for (ms, pressure) in [(300, 0.0), (310, 0.3), (320, 0.3)] {
             last = model.follow(DEVICE, ns + ms * MS, &pen(0.0, 0.0, pressure));

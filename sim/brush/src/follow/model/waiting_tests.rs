@@ -1,4 +1,4 @@
-//! A pen that waits to be set down, and what becomes of it where its stroke does not continue.
+//! A pen that waits to be set down and whose stroke does not continue.
 
 use maulstick_types::brush::{Solve, solve_flags};
 use maulstick_types::stylus::StylusSample;

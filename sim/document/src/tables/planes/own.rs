@@ -1,7 +1,7 @@
-//! Planes that a paint model keeps of its own, as bytes.
+//! A paint model's own planes as bytes.
 //!
-//! For each plane, in order of their shapes: its kind, the bytes of a value (4: floating point), and its values a cell, as
-//! three numbers of 16 bits; then its bytes, each as the difference to that of the same plane of an older page.
+//! For each plane, in order of their shapes: its kind, the bytes of a value (4: floating point), and its values a cell,
+//! as three numbers of 16 bits; then its bytes, each as the difference from that of the same plane of an older page.
 
 use std::io::Read;
 
@@ -10,14 +10,14 @@ use maulstick_canvas::planes::{Planes, TILE_CELLS};
 
 use crate::tables::defect::Defect;
 
-/// Bytes before those of a plane.
+/// Size of a plane's header, bytes.
 const HEAD: usize = 6;
-/// Bytes of all planes of a page, at most.
+/// Greatest size of all planes of a page, bytes.
 const ALL_MOST: usize = 1 << 28;
-/// Bytes of planes that are no layers, at most.
+/// Greatest size of planes that are not layers, bytes.
 const OTHERS_MOST: usize = 1 << 20;
 
-/// Bytes of the planes on a page of the slots of a mask, at most: each paint may lie in each layer.
+/// Greatest size of the planes of a mask's slots on a page: each paint may be in each layer.
 pub(super) fn most(mask: u64) -> usize {
     let layers = mask.count_ones() as usize * LAYERS_MOST;
     (OTHERS_MOST + layers * (HEAD + TILE_CELLS * 4)).min(ALL_MOST)
@@ -29,7 +29,7 @@ fn older<'a>(base: Option<&'a Planes>, shape: &OwnShape) -> Option<&'a [u8]> {
     found.map(|plane| &*plane.bytes)
 }
 
-/// Bytes with those of an older page taken off, or added to them.
+/// Bytes with those of an older page subtracted or added.
 fn changed(bytes: &[u8], older: Option<&[u8]>, by: fn(u8, u8) -> u8) -> Vec<u8> {
     match older {
         Some(older) => bytes.iter().zip(older).map(|(a, b)| by(*a, *b)).collect(),
@@ -89,7 +89,7 @@ pub(super) fn read(from: &mut impl Read, base: Option<&Planes>) -> Result<Vec<Ow
         let mut own = vec![0; shape.tile_bytes()];
         from.read_exact(&mut own).map_err(|_| Defect::Torn)?;
         let own = changed(&own, older(base, &shape), u8::wrapping_add);
-        // None is written: a file that has one may have any number of them in a few bytes.
+        // Such a plane is never written: a file could pack any number of them into a few bytes.
         if own.iter().all(|byte| *byte == 0) {
             return Err(Defect::Empty);
         }

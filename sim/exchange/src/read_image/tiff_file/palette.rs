@@ -1,5 +1,5 @@
-//! TIFF of a palette. The decoder reads no such picture, but its indices are stored as the numbers of a grey
-//! one: so it is read as grey, and the colours are looked up here.
+//! TIFF with a palette. The decoder does not support such pictures, but their indices are stored like the numbers of a
+//! grey one: it is read as grey, and the colours are looked up here.
 
 use std::io::{BufRead, Cursor, Read as _, Seek};
 
@@ -78,7 +78,7 @@ pub(super) fn read<R: BufRead + Seek>(
     })
 }
 
-/// Says in the directory at a place of the file that it is a grey picture.
+/// Changes the directory at a place of the file to that of a grey picture.
 fn call_grey(bytes: &mut [u8], directory: u64, order: ByteOrder) -> Option<()> {
     let word = |bytes: &[u8], at: usize| {
         let word = bytes.get(at..at + 2)?.try_into().ok()?;

@@ -1,11 +1,11 @@
-// Segments of strips, ribbons that turn their flat side to the surface, and faces of the skin: in each
-// cell the lowest is kept. An invocation draws one.
+// Segments of strips (ribbons whose flat side faces the surface) and faces of the skin: the lowest is kept in each
+// cell. One invocation draws one segment.
 
-// A ribbon that covers a cell only in part counts as higher by this much.
+// Greatest height added to a ribbon that covers a cell only in part.
 const EDGE_PENALTY = 0.9;
 
-// How low the head may touch paint: the highest, and what the head lies lower than it was solved, cells; the
-// thickest film, cells; and by how much a key grows with a score.
+// Scale of scores: the highest paint, and the additional sinking of the head, cells; the thickest film, cells; and
+// the growth of a key with a score.
 struct Scale {
     top: f32,
     film: f32,
@@ -27,13 +27,13 @@ fn most() -> f32 {
 fn keep(cell: u32, score: f32, per_cell: f32, segment: u32) {
     let place = clamp((score - step.low) * per_cell, 0.0, most());
     let key = (u32(place) << step.bits) | segment;
-    // Most lie above what was drawn before, and a look costs less than a write.
+    // Most are above what was drawn before, and a read costs less than a write.
     if key < atomicLoad(&keys[cell]) {
         atomicMin(&keys[cell], key);
     }
 }
 
-// −ln of a share above 0; its own form, for that of a device may be off by 1e-4 near 1.
+// −ln of a share above 0; a device's own log may be off by 1e-4 near 1.
 fn minus_ln(share: f32) -> f32 {
     let bits = bitcast<u32>(share);
     var power = i32(bits >> 23u) - 127;
@@ -48,8 +48,7 @@ fn minus_ln(share: f32) -> f32 {
     return -(f32(power) * 0.6931472 + 2.0 * s * series);
 }
 
-// Of what the others leave open of a cell a segment leaves a share: their product, as a sum of whole
-// numbers, in which order does not matter.
+// Multiplies the open share of a cell by `share`, as a sum of whole numbers that is independent of the order.
 fn leave_open(cell: u32, share: f32) {
     atomicAdd(&keys[cells() + cell], u32(minus_ln(max(share, 1e-6)) * PER_LOG));
 }

@@ -1,4 +1,4 @@
-//! Each guard of the servo against the fault that it is there for, on a virtual clock.
+//! Each guard of the servo against its fault, on a virtual clock.
 
 use maulstick_types::haptics::ForceLaw;
 
@@ -110,7 +110,7 @@ fn a_minute_without_contact_rests_the_amplifiers_and_a_touch_brings_the_force_up
         last = force.z;
     }
     assert!((last - 1.0).abs() < 1e-9);
-    // A hand that works on never rests.
+    // A hand that is working never rests.
     let mut servo = pressed(Limits::default());
     for tick in 0..100_000 {
         let depth = if tick % 50_000 < 100 { 0.0025 } else { -0.01 };
@@ -134,10 +134,9 @@ fn switched_off_there_is_no_force_at_once_and_switched_on_it_comes_up() {
     assert!((last - 1.0).abs() < 1e-9);
 }
 
-/// Something that has force begin anew, in words and done.
+/// Name and action of an event that makes force engage anew.
 type Beginning = (&'static str, fn(&mut Servo));
 
-/// What does.
 const BEGINNINGS: [Beginning; 5] = [
     ("a start", |servo| *servo = Servo::new(servo.limits)),
     ("another sender", |servo| {
@@ -156,7 +155,7 @@ const BEGINNINGS: [Beginning; 5] = [
     }),
 ];
 
-/// The largest force within two seconds on a hand that stays 2.5 mm deep, where 1 N is asked for, after
+/// The largest force within two seconds on a hand that stays 2.5 mm deep, where 1 N is requested, after
 /// `begin`; and then, once it has come up and pressed again.
 fn deep(begin: fn(&mut Servo), limits: Limits) -> [f64; 2] {
     let mut servo = pressed(limits);
@@ -166,7 +165,7 @@ fn deep(begin: fn(&mut Servo), limits: Limits) -> [f64; 2] {
         let forces = (0..2000).map(|_| servo.step(&handle(0.0025), DT).0.z);
         forces.skip(skip).fold(0.0, f64::max)
     };
-    // What was there before goes by its slew.
+    // The earlier force falls at its slew.
     let stayed = most(&mut servo, 10);
     servo.step(&handle(0.000_4), DT);
     for _ in 0..CALM_TICKS {
@@ -200,7 +199,7 @@ fn a_chance_reading_above_the_canvas_begins_nothing_and_a_small_force_does() {
         let depth = if tick % 5 < 3 { -0.001 } else { 0.0025 };
         assert_eq!(servo.step(&handle(depth), DT).0, DVec3::ZERO);
     }
-    // .16 N at .4 mm, of which the painter wants a half; what the models ask for counts.
+    // .16 N at .4 mm, halved by the painter; the models' request counts.
     servo.set_strength(0.5);
     let last = (0..600).fold(0.0, |_, _| servo.step(&handle(0.000_4), DT).0.z);
     assert!((last - 0.08).abs() < 1e-9, "{last} N");
@@ -216,7 +215,7 @@ fn a_model_past_its_time_begins_nothing_nor_does_a_strength_of_none() {
     let brief = Contact::new(&brief).expect("a model");
     servo.set_strength(0.0);
     for tick in 0..2000 {
-        // Models come for a second, are away for half of one, and come again.
+        // Models come for a second, stop for half a second, and come again.
         if !(1000..1500).contains(&tick) {
             servo.receive(brief, Sender::Same);
         }
@@ -263,8 +262,8 @@ fn strength_is_a_share_and_never_more_than_all() {
 }
 
 /// A course's fingertip on the handle of a device (hardware with 40.2 g and .8 N·s/m, encoder steps of
-/// 61.4 µm, 2 N), pressed into a wall: movement peak to peak in the last half second, m, and how
-/// often it turns round, Hz.
+/// 61.4 µm, 2 N), pressed into a wall: movement peak to peak in the last half second, m, and frequency of its
+/// reversals, Hz.
 fn course(stiffness: f64, limits: Limits, hold: usize) -> (f64, f64) {
     let limits = Limits {
         max_force_n: 2.0,
@@ -306,9 +305,8 @@ fn course(stiffness: f64, limits: Limits, hold: usize) -> (f64, f64) {
     (high - low, through.count() as f64 * 2.0)
 }
 
-/// Movement and frequency that others found by simulations of their own: 1.61 to 1.66 mm at 34 to 35 Hz
-/// (B), .07 to .08 mm (C, the passivity controller), 5.28 to 5.46 mm at 21 Hz (D, forces at 200 Hz),
-/// 22 mm at 17 Hz (F, forces at 60 Hz).
+/// Movement and frequency that others found by their own simulations: 1.61 to 1.66 mm at 34 to 35 Hz (B), .07 to .08 mm
+/// (C, the passivity controller), 5.28 to 5.46 mm at 21 Hz (D, forces at 200 Hz), 22 mm at 17 Hz (F, forces at 60 Hz).
 #[test]
 fn walls_of_a_course_shake_as_far_as_they_do_there() {
     let braked = Limits {
@@ -370,7 +368,7 @@ fn bare() -> Limits {
 
 #[test]
 fn a_hand_that_shakes_gets_a_softer_wall_until_it_is_still() {
-    // The force comes 5 ms late: no observer at the servo's rate sees that.
+    // The force comes 5 ms late, which no observer at the servo's rate can see.
     let (without, _) = shake(Hand::FINGERTIP, 400.0, bare(), 5);
     let watched = Limits {
         oscillation_m: 3e-4,
@@ -384,7 +382,8 @@ fn a_hand_that_shakes_gets_a_softer_wall_until_it_is_still() {
     assert!((0.15..0.8).contains(&softness) && servo.fault().is_none());
 }
 
-/// The seeded fault would be a wall that grows hard again under the hand: pressed in soft and let out hard it gives energy.
+/// The seeded fault would be a wall that grows hard again under the hand: pressed in soft and released hard it gives
+/// energy.
 #[test]
 fn a_softer_wall_does_not_harden_under_the_hand_but_while_it_is_away() {
     let mut servo = Servo::new(bare());

@@ -1,4 +1,4 @@
-//! The servo with a guide: when its force begins, how it changes, and when it ends.
+//! The servo with a guide: begin, change and end of its force.
 
 use glam::DVec3;
 use maulstick_types::haptics::GuideModel;
@@ -107,7 +107,7 @@ fn without_strength_or_guidance_there_is_none() {
     assert!((last.y + 0.2).abs() < 1e-9);
 }
 
-/// The largest change of force in a tick, N, and the force at the end, of a hand that goes along while pieces come.
+/// The largest change of force in a tick, N, and the force at the end, of a hand that moves along while pieces arrive.
 fn along(mut next: impl FnMut(u32) -> Option<Guide>, y: impl Fn(u32) -> f64) -> (f64, DVec3) {
     let mut servo = held(Limits::default());
     let (mut last, mut most) = (servo.force, 0.0f64);
@@ -155,7 +155,7 @@ fn a_hand_across_a_bend_changes_sides_without_a_knock() {
         |tick| tick.is_multiple_of(10).then_some(guide),
         |tick| 0.005 + 1e-5 * f64::from(tick.min(500)),
     );
-    // It has gone on beyond the second leg, out of reach.
+    // It has moved beyond the second leg, out of reach.
     assert_eq!(last, DVec3::ZERO);
     // .08 N/mm by .1 mm, and the correction.
     assert!(most < 0.015, "{most} N");
@@ -242,7 +242,7 @@ fn on_a_scaled_device_the_hand_feels_no_more() {
         }
         assert!((most - 0.6).abs() < 1e-9, "{scale}: {most} N");
     }
-    // Nor more than the motors bear for ever.
+    // Nor more than the motors' continuous force.
     let weak = Limits {
         continuous_force_n: 0.3,
         ..Limits::default()

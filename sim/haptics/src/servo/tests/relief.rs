@@ -29,7 +29,7 @@ fn over(law: ForceLaw, relief: HeightPatch) -> ContactModel {
     }
 }
 
-/// Largest force, N, and fastest change of it, N/s, of a hand that strokes over patches that leap at every model.
+/// Largest force, N, and fastest change of it, N/s, of a hand that strokes over patches that jump at every model.
 fn leaping(law: &ForceLaw, every: usize, limits: Limits) -> [f64; 2] {
     let mut servo = Servo::new(limits);
     let mut plant = Plant::omni(Hand::PEN_GRIP, DVec3::Z * (HEAD_M + 2e-3));
@@ -91,7 +91,7 @@ fn patches_that_leap_keep_the_servos_bounds() {
     println!("{most_n:.3} N, {most_slew:.1} N/s at most");
     assert!(most_n > 0.2, "it felt something");
     assert!(most_n <= MOST_N + 1e-9 && most_slew <= MOST_SLEW_N_S + 1e-6);
-    // The seeded fault: without the servo's bounds they would not be kept.
+    // The seeded fault: without the servo's bounds they would be exceeded.
     let unbounded = Limits {
         slew_n_s: 1e9,
         ..device()
@@ -139,7 +139,7 @@ fn another_patch_takes_over_without_a_jump_and_the_same_without_any_change() {
         change > 0.01 && most <= change / 15.0 * 1.01,
         "{most} of {change} N"
     );
-    // The same heights in a patch that lies a cell aside, as it follows the hand, change nothing.
+    // A patch with the same heights, shifted by a cell as it follows the hand, changes nothing.
     let level = |shift: f64| {
         let mut patch = crate::relief::tests::patch(|i, j| ((i + 2 * j) as i16) * 9);
         patch.corner_m = [-8e-3 + shift, -8e-3, 0.0];
@@ -153,8 +153,8 @@ fn another_patch_takes_over_without_a_jump_and_the_same_without_any_change() {
     assert!((here - aside).length() < 1e-9, "{here} {aside}");
 }
 
-/// A hand that presses by .5 N and is pulled along x: where it is after three and after six seconds, m, and the most energy
-/// that it was given, J.
+/// A hand that presses by .5 N and is pulled along x: its position after three and after six seconds, m, and the
+/// greatest energy given to it, J.
 fn pulled(pull_n: f64, static_friction: f64) -> ([f64; 2], f64) {
     let wall = ContactModel {
         friction_static: static_friction,
@@ -190,7 +190,7 @@ fn pulled(pull_n: f64, static_friction: f64) -> ([f64; 2], f64) {
         let handle = plant.handle();
         let (force, told) = servo.step(&handle, DT);
         assert_eq!(told.fault, None);
-        // It presses, and when that is at rest it pulls.
+        // The hand presses, and pulls once that is at rest.
         let press = 0.5 * (f64::from(tick) * 1e-3).min(1.0);
         let pull = pull_n * ((f64::from(tick) - 2000.0) * 1e-3).clamp(0.0, 1.0);
         plant.advance(force, DVec3::new(pull, 0.0, HEAD_M - press), DT);
@@ -207,7 +207,7 @@ fn pulled(pull_n: f64, static_friction: f64) -> ([f64; 2], f64) {
     (places, most_j)
 }
 
-/// Known answers: below the breakaway of .3 · .5 N the hand hangs on its bristles of 80 N/m, above it it slides.
+/// Known answers: below the breakaway of .3 · .5 N the hand hangs on its bristles of 80 N/m, above it slides.
 #[test]
 fn a_hand_that_pulls_by_less_than_the_breakaway_does_not_creep() {
     for pull in [0.05, 0.1, 0.13] {
@@ -234,7 +234,7 @@ fn a_hand_that_pulls_by_less_than_the_breakaway_does_not_creep() {
     assert!(late - early > 1e-2, "{early} {late}");
 }
 
-/// Known answer: a brush that leans by 30° and presses: the lever of its head times the force.
+/// Known answer of a brush that leans by 30° and presses: the lever of its head times the force.
 #[test]
 fn the_brush_turns_the_hand_by_its_lever_and_not_in_the_air() {
     let wall = ContactModel {
@@ -273,7 +273,7 @@ fn the_brush_turns_the_hand_by_its_lever_and_not_in_the_air() {
     // 1 N up at 12.5 mm to the left and 21.7 mm below: about y.
     let expected = DVec3::new(0.0, 0.0125, 0.0);
     assert!((last - expected).length() < 1e-9, "{last}");
-    // The work of force and torque is that of one potential: a small turn costs as much as a step that is as deep.
+    // The work of force and torque is that of one potential: a small turn costs as much as a step to the same depth.
     let turn = rotation(DVec3::Y, 1e-6);
     let turned = HandleState {
         orientation: turn * leaning,
@@ -295,7 +295,7 @@ fn the_brush_turns_the_hand_by_its_lever_and_not_in_the_air() {
     assert!(tick.fault.is_some() && force == DVec3::ZERO && tick.torque_n_m == DVec3::ZERO);
 }
 
-/// A stylus of 20 g·cm² in light fingers that turn it about its ferrule: how far it still turns after it was kicked, rad.
+/// A stylus of 20 g·cm² in light fingers that turn it about its ferrule: its remaining motion after a kick, rad.
 fn turning(bears: f64, lever_m: f64) -> f64 {
     const INERTIA: f64 = 2e-6;
     const FINGERS: [f64; 2] = [0.02, 1e-4];
@@ -350,7 +350,7 @@ fn a_stylus_that_is_turned_by_its_brush_comes_to_rest() {
         println!("{bears} N/m: {still:.1e} rad");
         assert!(still < 1e-3, "{bears} N/m: {still} rad");
     }
-    // The seeded fault: a wall as stiff as no device bears turns it to and fro.
+    // The seeded fault: a wall stiffer than any device allows turns it to and fro.
     let shaking = turning(4000.0, 0.05);
     assert!(shaking > 1e-2, "{shaking} rad");
 }

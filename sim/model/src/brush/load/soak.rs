@@ -5,8 +5,8 @@ use maulstick_canvas::quantum::{Counts, SLOTS};
 use super::BrushLoad;
 
 impl BrushLoad {
-    /// Puts thinner in the place of paint: moves the thinner's share of what the brush carries a `part` of the way to
-    /// `share`. Returns the paint that went, by slot.
+    /// Replaces paint by thinner: moves the thinner's share of the load a `part` of the distance to
+    /// `share`. Returns the removed paint, by slot.
     pub fn soak(&mut self, thinner: usize, share: f64, part: f64) -> Counts {
         let held = self.share(thinner);
         let washed = ((share - held) * part / (1.0 - held)).clamp(0.0, 1.0);

@@ -1,4 +1,4 @@
-//! Drawings of the head in a step ([`each_drawing`]), and the cells on which they are.
+//! Drawings of the head in a step ([`each_drawing`]), and their cells.
 
 use crate::stroke::{Stroker, each_drawing};
 use maulstick_brush::HeadPose;
@@ -11,11 +11,11 @@ use maulstick_gpu::steps::record::Grid;
 pub(crate) struct Drawing {
     poses: [HeadPose; 2],
     pub(crate) shifts: Vec<[i64; 2]>,
-    /// Way of a cell of the head, reference cells: by the cells that its strip goes, and besides.
+    /// Path of a cell of the head, reference cells: a factor on the motion of its strip, and a summand.
     pub(crate) by_even: [f32; 2],
 }
 
-/// The drawings of a step, and the way of its anchor point, cells.
+/// The drawings of a step, and the path of its anchor point, cells.
 pub(crate) fn drawings(step: &Step<'_>, stroker: Stroker) -> (Vec<Drawing>, f32) {
     let (mut drawings, mut poses) = (Vec::new(), Default::default());
     let length = each_drawing(&step.sweep, stroker, &mut poses, |motion, shifts, way| {
@@ -29,7 +29,7 @@ pub(crate) fn drawings(step: &Step<'_>, stroker: Stroker) -> (Vec<Drawing>, f32)
 }
 
 impl Drawing {
-    /// The motion in the middle of which it is.
+    /// The motion around it.
     pub(crate) fn sweep(&self) -> Sweep<'_> {
         let [from, to] = &self.poses;
         Sweep {
@@ -39,7 +39,8 @@ impl Drawing {
         }
     }
 
-    /// The cells of the step's bounds on which it can be, beside the window too; none where it is beside them.
+    /// The cells of the step's bounds that it can cover, including those beside the window; `None` where there are
+    /// none.
     pub(crate) fn grid(&self, step: &Step<'_>) -> Option<Grid> {
         let [_, pose] = &self.poses;
         let (low, high) = low_bounds(step.head, pose, &step.traits, f32::MAX)?;
@@ -52,7 +53,7 @@ impl Drawing {
     }
 }
 
-/// The cells of the surface from the first up to but not with the second, all of which may be drawn on.
+/// The cells of the surface in a half-open range, all of which may be drawn on.
 pub(crate) fn grid(step: &Step<'_>, from: [i64; 2], to: [i64; 2]) -> Grid {
     let origin = step.window.origin();
     let size = [0, 1].map(|i| (to[i] - from[i]) as u32);

@@ -1,16 +1,16 @@
 //! dAb on the device: the stages of the paint model `dab`, in WGSL.
 //!
-//! Which blends a step has, and where, follows from the heads alone, so the processor knows it beforehand: the head is
-//! drawn on the device once for each drawing, and a dispatch blends it with the canvas at each place of its way. Between
-//! them the brush's films are on the cells of the drawing, in whole quanta; the thresholds are those of the processor in
-//! fixed point.
+//! The number and the places of a step's blends follow from the heads alone, so the processor knows them beforehand.
+//! The device draws the head once for each drawing, and a dispatch blends it with the canvas at each place of its path.
+//! Between blends the brush's films are on the cells of the drawing, in whole quanta; the thresholds are those of the
+//! processor in fixed point.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | `stages` | the stages |
 //! | `drawing` | the drawings of the head in a step |
-//! | `record` | a blend as the shaders take it |
-//! | [`probe`] | what single stages leave, for tests |
+//! | `record` | a blend in the layout of the shaders |
+//! | [`probe`] | results of single stages, for tests |
 
 mod drawing;
 pub mod probe;
@@ -25,27 +25,25 @@ use crate::{Dab, first_blend};
 use maulstick_model::interface::Step;
 
 use drawing::{drawings, grid};
+use maulstick_gpu::steps::device_layout::DeviceLayout;
 use maulstick_gpu::steps::model::{GpuModel, Planner};
 use maulstick_gpu::steps::record::StepRecord;
-use maulstick_gpu::steps::residence::Residence;
 use maulstick_gpu::steps::workspace::{Batch, Call};
 use maulstick_gpu::{Choice, Device, GpuError, OnDevice};
 use record::BlendRecord;
 use stages::{BLEND, DRAW, KERNELS, NEXT_DRAWING, REFILL, WEIGH};
 
-/// The paint model on a device; the load on the machine chooses how it strokes.
+/// The paint model on a device; the load on the machine selects its stroking algorithm.
 ///
-/// # Errors
-/// A [`GpuError`] where the driver does not take the shaders.
+/// # Errors A [`GpuError`] where the driver rejects the shaders.
 pub fn model(gpu: Device) -> Result<GpuModel, GpuError> {
     let steps = Steps { stroker: None };
     GpuModel::new(gpu, &KERNELS, Box::new(steps), Box::<Dab>::default())
 }
 
-/// The same, but it always strokes by this algorithm.
+/// The paint model with a fixed stroking algorithm.
 ///
-/// # Errors
-/// As [`model`].
+/// # Errors As [`model`].
 pub fn stroking(gpu: Device, stroker: Stroker) -> Result<GpuModel, GpuError> {
     let steps = Steps {
         stroker: Some(stroker),
@@ -68,7 +66,7 @@ impl Planner for Steps {
     fn plan(
         &self,
         step: &Step<'_>,
-        on: &Residence,
+        on: &DeviceLayout,
         number: u64,
         batch: &mut Batch,
     ) -> Option<Range<usize>> {

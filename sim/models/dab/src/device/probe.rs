@@ -1,4 +1,4 @@
-//! What stages of a step leave on the device: for the tests that hold each beside its twin.
+//! State on the device after a stage of a step, for tests that compare each stage with its twin.
 
 use crate::stroke::Stroker;
 use bytemuck::pod_collect_to_vec;
@@ -11,47 +11,46 @@ use maulstick_gpu::device::{Device, GpuError};
 use maulstick_gpu::steps::kernels::Binding;
 use maulstick_gpu::steps::probing::Probing;
 
-/// The head over a cell.
+/// The part of the head over a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Over {
     /// Column and row of the cell on the grid.
     pub at: [usize; 2],
-    /// The brush's texel.
+    /// Texel of the brush.
     pub texel: u32,
     /// Share of the cell that is covered.
     pub cover: f32,
-    /// Share that goes over, by the cover.
+    /// Transferred share, times the cover.
     pub rate: f32,
-    /// Way by the cover, reference cells.
+    /// Path times the cover, reference cells.
     pub way: f32,
     /// Height of the middle line of the bristle, cells.
     pub height: f32,
-    /// Height of its lower side over that, cells.
+    /// Height of its lower side over the middle line, cells.
     pub clearance: f32,
 }
 
-/// What is looked at.
+/// State after a stage.
 #[derive(Clone, Debug)]
 pub struct Probe {
     /// The surface's cell at the lower left corner of the grid.
     pub origin: [i64; 2],
     /// Columns and rows of the grid.
     pub size: [usize; 2],
-    /// The cells below the head as it was drawn last, row after row.
+    /// The cells below the last drawing of the head, row by row.
     pub over: Vec<Over>,
 }
 
-/// Stages of steps, one after the other.
+/// Stages of steps, run separately.
 pub struct Prober {
     stages: Probing<Steps>,
     stroker: Stroker,
 }
 
 impl Prober {
-    /// The stages on a device, of this stroking algorithm.
+    /// The stages on a device, with this stroking algorithm.
     ///
-    /// # Errors
-    /// A [`GpuError`] where the driver does not take the shaders.
+    /// # Errors A [`GpuError`] where the driver rejects the shaders.
     pub fn new(gpu: Device, stroker: Stroker) -> Result<Self, GpuError> {
         let steps = Steps {
             stroker: Some(stroker),
@@ -60,12 +59,10 @@ impl Prober {
         Ok(Self { stages, stroker })
     }
 
-    /// Does those stages of a step that come up to the last one called `last`, writes what they did to
-    /// its window and load, and tells what else they left. None where the head is beside the surface,
-    /// or its window is too large.
+    /// Runs the stages of a step up to the last one called `last`, writes their result to its window and load, and
+    /// returns their other results. `None` where the head is beside the surface, or its window is too large.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn run(&mut self, step: &mut Step<'_>, last: &str) -> Result<Option<Probe>, GpuError> {
         let grid = drawings(step, self.stroker).0.pop();
         let grid = grid.and_then(|drawing| drawing.grid(step));

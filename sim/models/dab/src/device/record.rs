@@ -1,4 +1,4 @@
-//! A blend as the shaders take it.
+//! A blend in the layout of the shaders.
 
 use crate::dither::Dither;
 use crate::reservoir::Refill;
@@ -10,9 +10,9 @@ use maulstick_model::interface::{Step, Transfer};
 
 use maulstick_gpu::steps::record::{Grid, RECORD_WORDS};
 
-/// No strips.
+/// Number of an absent strip.
 const NONE: u32 = u32::MAX;
-/// Parts of a share in the upper half of a fixed-point number, and in both.
+/// Scale of a share in the upper half of a fixed-point number, and in both halves.
 const PARTS: [f64; 2] = [4_294_967_296.0, 18_446_744_073_709_551_616.0];
 
 /// `Blend` of blend.wgsl.
@@ -23,7 +23,7 @@ pub(crate) struct BlendRecord {
     high: [i32; 2],
     shift: [i32; 2],
     corner: [i32; 2],
-    /// Way of a cell of the head, reference cells: by the cells that its strip goes, and besides.
+    /// Path of a cell of the head, reference cells: a factor on the motion of its strip, and a summand.
     pub(crate) by_even: [f32; 2],
     large: f32,
     share: [u32; 2],
@@ -42,7 +42,7 @@ pub(crate) struct BlendRecord {
     rate: f32,
     turn: u32,
     thresholds: [u32; 2],
-    /// Cells of the grid on which the step draws first.
+    /// Number of cells of the grid of the step's first drawing.
     pub(crate) first_drawn: u32,
     room: [u32; 31],
 }
@@ -55,7 +55,8 @@ fn halves(parts: u64) -> [u32; 2] {
 }
 
 impl BlendRecord {
-    /// What the blends of a step on a grid share, of one that goes `cells` in all and is the brush's of this number.
+    /// Common parameters of the blends of a step on a grid: the step's number since the brush's load, and the number of
+    /// cells of its whole path.
     pub(crate) fn new(step: &Step<'_>, grid: &Grid, (number, cells): (u64, f32)) -> Self {
         let canvas = step.window.area(step.bounds.0, step.bounds.1);
         let origin = step.window.origin();
@@ -93,7 +94,7 @@ impl BlendRecord {
         }
     }
 
-    /// The blend of a drawing at a place of `count`, where the thresholds of the first cell of the step's bounds are these.
+    /// The blend of a drawing at one of `count` places; `threshold` is that of the first cell of the step's bounds.
     pub(crate) fn at(
         mut self,
         (place, count): (usize, usize),

@@ -5,7 +5,7 @@ use crate::volume::{MOST, UNIT};
 
 use maulstick_gpu::steps::kernels::{Binding as B, Groups, Kernel, RASTERIZER};
 
-/// What the model's stages share.
+/// Shared WGSL of the model's stages.
 const COMMON: &str = include_str!("shaders/common/blend.wgsl");
 
 /// Kernels. A step runs [`WEIGH`], for each of its drawings [`DRAW`] and a [`BLEND`] a place, [`NEXT_DRAWING`] between two

@@ -1,4 +1,4 @@
-//! The wet film that stayed over a layer when that dried, as a note on the layer.
+//! The wet film over a layer at the time of its drying, stored as a note on the layer.
 
 use std::sync::Arc;
 
@@ -11,14 +11,14 @@ use maulstick_canvas::tile::Tile;
 /// Quanta of a step of the plane.
 const STEP: f32 = 16.0;
 
-/// Shape of the plane, a note.
+/// Shape of the note's plane.
 const SHAPE: OwnShape = OwnShape {
     kind: u16::MAX,
     values: ValueType::U16,
     per_cell: 1,
 };
 
-/// Wet quanta of all paints that stayed over a dried page, a cell; `None` where nothing did.
+/// Wet quanta of all paints over a dried page, by cell; `None` where there were none.
 pub(crate) fn wet_over(dried: &Planes) -> Option<Vec<f32>> {
     let plane = dried.own().iter().find(|plane| plane.shape == SHAPE)?;
     let values = plane.bytes.chunks_exact(2);
@@ -29,7 +29,7 @@ pub(crate) fn wet_over(dried: &Planes) -> Option<Vec<f32>> {
     )
 }
 
-/// Dried planes with so many wet quanta noted over each cell, in steps of 16.
+/// Dried planes with a note of the wet quanta over each cell, in steps of 16.
 pub(crate) fn noted(dried: Planes, stays: &[f32]) -> Planes {
     let most = f32::from(u16::MAX);
     let values = stays.iter().map(|quanta| (quanta / STEP).min(most) as u16);
@@ -42,7 +42,7 @@ pub(crate) fn noted(dried: Planes, stays: &[f32]) -> Planes {
     dried.with_own(own)
 }
 
-/// The tile with the amount of its wet paint noted on its newest dry layer.
+/// The tile with a note of its wet paint on its newest dry layer.
 pub(crate) fn with_wet_noted(tile: Tile) -> Tile {
     let Some(newest) = tile.dry() else {
         return tile;

@@ -1,4 +1,4 @@
-//! The head over the cells of the grid, as the processor draws it.
+//! The head over the cells of the grid, compared with the processor's drawing.
 
 use maulstick_dab::device::probe::{Over, Probe, Prober};
 use maulstick_dab::stroke::Stroker;
@@ -10,11 +10,11 @@ use crate::crumpled::crumpled;
 use crate::device;
 use crate::scene::Scene;
 
-/// Roundings of a place below 128 cells, and of scores to 2⁻¹⁸ of the height that they may have.
-const NEAR: f32 = 2e-4;
+/// Tolerance of positions and scores: roundings of a place below 128 cells, and of scores to 2⁻¹⁸ of their range.
+const PLACE_TOLERANCE: f32 = 2e-4;
 
-/// The head as the processor draws it in the middle of a step, on the grid of the step's bounds, as if all paint stood so much
-/// higher, cells.
+/// The processor's drawing of the head in the middle of a step, on the grid of the step's bounds, with all paint raised
+/// by `higher` cells.
 fn drawn(step: &mut Step<'_>, higher: f32) -> Drawn {
     let mut drawn = Drawn::default();
     let (from, to) = step.bounds;
@@ -26,9 +26,9 @@ fn drawn(step: &mut Step<'_>, higher: f32) -> Drawn {
     drawn
 }
 
-/// How many cells of a probe's grid have another part of the head over them, and how many have any.
+/// Number of cells of a probe's grid with another part of the head over them, and number with any.
 fn apart(drawn: &Drawn, probe: &Probe, travel: impl Fn(&Over) -> f32) -> (usize, usize) {
-    let near = |a: f32, b: f32| (a - b).abs() <= NEAR;
+    let near = |a: f32, b: f32| (a - b).abs() <= PLACE_TOLERANCE;
     let alike = probe.over.iter().filter(|over| {
         // The device's grid is a part of this one.
         let [x, y] = [0, 1].map(|i| over.at[i] + (probe.origin[i] - drawn.origin[i]) as usize);
@@ -47,19 +47,19 @@ fn apart(drawn: &Drawn, probe: &Probe, travel: impl Fn(&Over) -> f32) -> (usize,
 #[test]
 fn the_head_is_over_the_same_cells() {
     let mut prober = Prober::new(device(), Stroker::Better).expect("taken");
-    // A step of about a cell has one drawing, of all of it.
+    // A step of about a cell has one drawing.
     let strips = (0..12).map(Scene::new);
     let (mut all, mut beside, mut higher) = (0, 0, 0);
     for (seed, mut scene) in strips.chain((0..4).map(crumpled)).enumerate() {
         if seed % 2 == 1 {
-            // Where canvas and brush are bare, only what is low is drawn.
+            // Where canvas and brush are bare, only low parts are drawn.
             scene.load.take_all();
             scene
                 .window
                 .planes_mut()
                 .for_each(|(_, plane)| plane.fill(0.0));
         }
-        // What bends in the step is drawn anew in each part of it.
+        // A head that bends in the step is drawn anew in each part of it.
         scene.from.z.clone_from(&scene.to.z);
         let along = [
             scene.to.x[0] - scene.from.x[0],
@@ -89,8 +89,7 @@ fn the_head_is_over_the_same_cells() {
             (0..2).any(|i| !(0..limit[i]).contains(&(probe.origin[i] + over.at[i] as i64)))
         };
         beside += probe.over.iter().filter(outside).count();
-        // Where two segments are equally deep, rounding decides; and places in faces that are seen edge on
-        // are rough.
+        // Where two segments are equally deep, rounding decides; places in faces seen edge on are inexact.
         let few = if scene.head.skin().is_some() { 20 } else { 400 };
         assert!(off * few <= covered, "scene {seed}: {off} of {covered}");
         let exchanging = scene.traits.exchanging;
@@ -100,7 +99,7 @@ fn the_head_is_over_the_same_cells() {
         });
         assert_eq!(shares.count(), 0, "scene {seed}");
         let raise = |over: &Over| Over {
-            clearance: over.clearance + 2.0 * NEAR,
+            clearance: over.clearance + 2.0 * PLACE_TOLERANCE,
             ..*over
         };
         let mut raised = probe.clone();
@@ -124,7 +123,7 @@ fn the_head_is_over_the_same_cells() {
     );
 }
 
-/// A head that rests has no way of its own: all cells go as far as the step says.
+/// A resting head has no motion of its own: all cells have the path of the step.
 #[test]
 fn a_fixed_footprint_goes_along_the_way_of_its_anchor() {
     let mut prober = Prober::new(device(), Stroker::Faster).expect("taken");

@@ -1,5 +1,5 @@
-//! The stages of a dab step on the device beside those of the processor, on seeded scenes; whole strokes; a device
-//! that is lost.
+//! The stages of a dab step on the device compared with the processor's, on seeded scenes; whole strokes; a lost
+//! device.
 
 #[path = "../../../impasto/tests/oracle/scene.rs"]
 #[allow(
@@ -29,7 +29,7 @@ use maulstick_gpu::{Choice, Device};
 
 use crate::scene::Scene;
 
-/// An adapter: where there is no other, lavapipe.
+/// An adapter, lavapipe if there is no other.
 fn device() -> Device {
     Device::open(Choice::Forced)
         .expect("a Vulkan driver: install mesa-vulkan-drivers, as ./test does")
@@ -39,12 +39,12 @@ fn device() -> Device {
 fn every_mode_does_what_the_processor_does() {
     for stroker in [Stroker::Faster, Stroker::Better] {
         let mut gpu = maulstick_dab::device::stroking(device(), stroker).expect("taken");
-        // Where rounding decides which bristle a cell has, or whether a unit goes, whole units differ.
+        // Where rounding decides about a cell's bristle, or about a unit, whole units differ.
         let near = modes::Near {
             quanta: [8.0, 24.0],
             beyond: 0.002,
         };
-        // Of one blend, and of several drawings with several blends.
+        // One blend, and several drawings with several blends.
         for scene in [Scene::new, |seed| Scene::far(seed, 6.0)] {
             modes::agree(&mut gpu, &mut Dab::stroking(stroker), near, scene);
         }

@@ -1,4 +1,4 @@
-//! Surfaces of strips filled again from their reservoirs, on what the blends left: beside the processor's.
+//! Refilling of strips from their reservoirs after the blends, compared with the processor's.
 
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_dab::device::probe::{Probe, Prober};
@@ -12,14 +12,14 @@ use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 use crate::device;
 use crate::scene::Scene;
 
-/// Strips are filled again every so many steps.
+/// Interval between refills of a strip, steps.
 const TURNS: u64 = BrushTraits::FLOW_STEPS;
 
-/// The same scene after so many steps of its brush.
+/// The same scene after `steps` steps of its brush.
 fn scene(seed: u64, steps: u64) -> Scene {
     let mut scene = Scene::far(seed, 4.0);
     (0..steps).for_each(|_| scene.load.count_step());
-    // A whole deep unit shall go now and then, with a few texels of quanta.
+    // So that a whole deep unit moves now and then, with a few texels of quanta.
     scene.traits.film_full *= 40.0;
     scene.traits.inside_full *= 40.0;
     for slot in 0..SLOTS {
@@ -32,7 +32,7 @@ fn scene(seed: u64, steps: u64) -> Scene {
     scene
 }
 
-/// What the processor does to a load with the strips under a probe, at the turn and with the thresholds of this step.
+/// The processor's result on a load with the strips under a probe, at the turn and with the thresholds of this step.
 fn filled(scene: &mut Scene, probe: &Probe, [turn, number]: [u64; 2]) {
     let step = scene.step();
     let way = Course::of(&step.sweep, None).way;
@@ -49,8 +49,8 @@ fn filled(scene: &mut Scene, probe: &Probe, [turn, number]: [u64; 2]) {
     scene.load.count_films();
 }
 
-/// The largest difference of a paint's counts on a strip and in it, as a share of the largest of them: what moves is a
-/// share of what is on one of its texels.
+/// The largest difference of a paint's counts on and in a strip, as a share of the largest count: the amount that moves
+/// is a share of one of its texels.
 fn apart(one: &BrushLoad, two: &BrushLoad) -> f64 {
     let mut worst = 0.0f64;
     for slot in (0..SLOTS).filter(|slot| one.has(*slot)) {
@@ -74,7 +74,7 @@ fn reservoirs_fill_surfaces_again() {
     let mut prober = Prober::new(device(), Stroker::Faster).expect("taken");
     let mut flowed = 0;
     for seed in 0..6 {
-        // What the blends leave: nothing comes from inside the brush.
+        // The load after the blends, without refilling.
         let mut before = scene(seed, seed);
         before.traits.refill = 0.0;
         let probe = prober.run(&mut before.step(), "refill");
@@ -92,7 +92,7 @@ fn reservoirs_fill_surfaces_again() {
             filled(&mut scene, &probe, turns);
             scene.load
         };
-        // By roundings of f32 of what there is, several times in a step.
+        // Several roundings of f32 in a step.
         let off = apart(&on_gpu.load, &on_cpu([number; 2]));
         println!("scene {seed}: counts off by {off:.1e}");
         assert!(off < 2e-6, "scene {seed}: {off}");

@@ -1,4 +1,4 @@
-//! Whole strokes of all stroking algorithms: beside those of the processor.
+//! Whole strokes of all stroking algorithms, compared with the processor's.
 
 use maulstick_dab::Dab;
 use maulstick_dab::stroke::Stroker;
@@ -13,9 +13,9 @@ use crate::device;
 use crate::easel::{apart, easel_of, paint, stroke, volume};
 use crate::strokes;
 
-/// Mean and 99th percentile of ΔE00 by which the backends may differ.
+/// Tolerance of the backends' difference: mean and 99th percentile of ΔE00.
 const COLOURS: [f64; 2] = [0.05, 0.5];
-/// Share of the volume by which they may.
+/// Tolerance of the backends' difference of volume, as a share.
 const VOLUME: f64 = 2e-4;
 
 fn stroking(stroker: Stroker, gpu: Option<Device>) -> Painting {
@@ -66,7 +66,7 @@ fn both_backends_paint_the_same_on_dry_paint() {
     }
 }
 
-/// A loaded brush, and then a clean one through what it has left, on wet paint.
+/// A loaded brush, and then a clean one through its paint, on wet paint.
 #[test]
 fn both_backends_paint_the_same_strokes() {
     for stroker in [Stroker::Faster, Stroker::Better, Stroker::Spline] {
@@ -86,7 +86,7 @@ fn both_backends_paint_the_same_strokes() {
         assert_eq!(gpu.report().quanta_missing, 0, "{stroker:?}");
         let (cells, same) = (gpu.work().1 as f64, cpu.work().1 as f64);
         assert!((cells / same - 1.0).abs() < 0.01, "{cells} {same}");
-        // A stroke a fifth of a cell beside it is another one.
+        // A stroke a fifth of a cell aside is another one.
         let (mut beside, _) = painted(0.05, None);
         assert!(
             !agree(&mut beside, &mut gpu, before),

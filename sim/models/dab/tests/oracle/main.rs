@@ -1,5 +1,5 @@
-//! Each stage of dAb's step against a plain oracle in f64, and whole strokes against what must hold of them. Beside each
-//! comparison stands a seeded fault that it must find.
+//! Each stage of dAb's step against a plain oracle in f64, and whole strokes against their invariants. Each comparison
+//! has a seeded fault that it must find.
 
 mod raster;
 mod reservoir;

@@ -1,4 +1,4 @@
-//! § 4.5.1, 4.5.3: films are parted among the cells that their texels cover, and come back to their texels.
+//! § 4.5.1, 4.5.3: films are distributed over the cells of their texels, and return to their texels.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use maulstick_model::footprint::drawn::Drawn;
 
 use crate::scene::Bench;
 
-/// Quanta of a paint on each texel, by what its cells hold.
+/// Quanta of a paint on each texel, from its cells.
 fn back(texels: &[u32], plane: &[f32]) -> BTreeMap<u32, i64> {
     let mut sums = BTreeMap::new();
     for (texel, quanta) in texels.iter().zip(plane) {
@@ -39,7 +39,7 @@ fn films_are_parted_among_the_cells_that_they_cover() {
         for slot in [0, 3, 7] {
             let plane = raster.film(slot).expect("lent");
             let film = step.load.film_of(slot);
-            // Cells that hold what the share by this measure says.
+            // Number of cells with the expected share under this measure.
             let as_by = |measure: fn(f64, f64) -> f64| {
                 let held = |texel: u32| film.map_or(0.0, |film| f64::from(film[texel as usize]));
                 let own = drawn.texel.iter().zip(plane).filter(|(texel, quanta)| {

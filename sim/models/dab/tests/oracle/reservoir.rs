@@ -38,7 +38,7 @@ proptest! {
     }
 }
 
-/// Half of what one texel has more than the next evens out at the full rate.
+/// Half of the difference between successive texels evens out at the full rate.
 #[test]
 fn paint_runs_down_a_bristle_and_never_up() {
     let mean = |both: [f64; 2]| -> f64 {

@@ -105,7 +105,7 @@ impl Bench {
         pose
     }
 
-    /// Steps through these poses, in a window on all of the surface or on the tiles around alone.
+    /// Steps through these poses, in a window on the whole surface or on the surrounding tiles alone.
     pub(crate) fn stroke(&mut self, way: &[HeadPose], narrow: bool) {
         for place in 1..way.len() {
             let (from, to) = (&way[place - 1], &way[place]);
@@ -116,9 +116,10 @@ impl Bench {
                 bounds.0.map(|at| at - longer),
                 bounds.1.map(|at| at + longer),
             );
-            let area = match narrow {
-                true => (bounds.0.map(|i| i - 8), bounds.1.map(|i| i + 8)),
-                false => ([0; 2], [i64::from(SIDE); 2]),
+            let area = if narrow {
+                (bounds.0.map(|i| i - 8), bounds.1.map(|i| i + 8))
+            } else {
+                ([0; 2], [i64::from(SIDE); 2])
             };
             let sweep = Sweep {
                 before: place.checked_sub(2).map(|before| &way[before]),
@@ -143,7 +144,7 @@ impl Bench {
         }
     }
 
-    /// Lets `look` have a step from a head to another, in a window on all of the surface.
+    /// Calls `look` with a step from a head to another, in a window on the whole surface.
     pub(crate) fn with_step(&mut self, poses: &[HeadPose; 2], look: impl FnOnce(&mut Step<'_>)) {
         let sweep = Sweep {
             before: None,

@@ -11,14 +11,14 @@ use crate::scene::{Bench, SIDE};
 
 const STROKERS: [Stroker; 3] = [Stroker::Faster, Stroker::Better, Stroker::Spline];
 
-/// A straight way of so many cells, a step each `step` of them.
+/// A straight path of `cells` cells, in steps of `step` cells.
 fn straight(bench: &Bench, cells: usize, step: f64) -> Vec<HeadPose> {
     let count = (cells as f64 / step) as usize;
     let place = |i: usize| [60.0 + step * i as f64, 100.0 + 0.2 * step * i as f64];
     (0..=count).map(|i| bench.pose(place(i))).collect()
 }
 
-/// A quarter of a circle of 50 cells radius in so many steps, and what an even circle has painted.
+/// A quarter of a circle of 50 cells radius in `steps` steps.
 fn arc(bench: &Bench, steps: usize) -> Vec<HeadPose> {
     let place = |i: usize| {
         let angle = 1.5 * i as f64 / steps as f64;
@@ -131,7 +131,7 @@ fn threads_change_no_byte() {
     }
 }
 
-/// A head that deforms is drawn anew as often as keeps it within the slack; one that does not, once.
+/// A head that deforms is redrawn as often as keeps it within the slack; a rigid one is drawn once.
 #[test]
 fn one_drawing_serves_while_all_of_the_head_goes_the_same_way() {
     let bench = Bench::new(Stroker::Better);
@@ -152,7 +152,7 @@ fn one_drawing_serves_while_all_of_the_head_goes_the_same_way() {
         assert!((at_least..=most).contains(&runs.len()), "{}", runs.len());
         let parts: usize = runs.iter().map(|run| run.shifts.len()).sum();
         assert_eq!(parts, 12);
-        // Where each point is in each part, and where the run's drawing has it.
+        // Place of each point in each part, and in the run's drawing.
         let mut worst = [0.0f32; 2];
         let mut part = 0;
         for run in &runs {
@@ -185,7 +185,7 @@ fn one_drawing_serves_while_all_of_the_head_goes_the_same_way() {
     }
 }
 
-/// Paint on cells by so many thousands of those that a finely stepped stroke has painted.
+/// Difference of paint on cells, in thousandths of the paint of a finely stepped stroke.
 fn off(films: &[f32], fine: &[f32]) -> f64 {
     let pairs = films.iter().zip(fine);
     let off: f64 = pairs.map(|(a, b)| f64::from((a - b).abs())).sum();
@@ -199,7 +199,7 @@ fn painted(stroker: Stroker, steps: usize) -> Vec<f32> {
     bench.films()
 }
 
-/// On a curve of long steps the spline is nearest to a stroke of short ones.
+/// On a curve with long steps the spline is closest to a stroke with short ones.
 #[test]
 fn long_steps_paint_what_short_ones_do_the_better_the_closer_the_way_is_followed() {
     let fine = painted(Stroker::Better, 80);

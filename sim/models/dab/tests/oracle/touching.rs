@@ -1,4 +1,4 @@
-//! § 4.2: the brush touches where it is near enough to the top of the surface, with the film that it carries.
+//! § 4.2: the brush touches where it is near enough to the top of the surface, with its film.
 
 use maulstick_dab::touching::{BRIDGED, Brush, Canvas, Touching, touch};
 use rand_pcg::Pcg32;
@@ -8,26 +8,26 @@ use rand_pcg::rand_core::Rng as _;
 const CELLS: f64 = 1.5e-9 / 1.25e-4;
 const SINK: f64 = 0.3;
 
-/// What an oracle does otherwise.
+/// Fault of an oracle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     None,
-    /// The film of the brush does not count.
+    /// The film of the brush is ignored.
     Bare,
     /// A bristle does not follow the ride into valleys.
     Stiff,
-    /// It does not sink in.
+    /// A bristle does not sink in.
     Floats,
-    /// Dry relief does not count.
+    /// Dry relief is ignored.
     Flat,
-    /// Wet paint does not count.
+    /// Wet paint is ignored.
     Dry,
 }
 
 /// A cell: cover, height, clearance, base, ride, quanta on the brush and on the canvas.
 type Cell = [f64; 7];
 
-/// Whether a cell touches, share of the wet paint that is reached, and the gap, quanta.
+/// True if a cell touches; share of the wet paint that is reached; the gap, quanta.
 fn meets(
     [cover, height, clearance, base, ride, film, lies]: Cell,
     fault: Fault,

@@ -4,7 +4,7 @@ use maulstick_dab::transfer::{Limits, Meeting, Paints, Row, blend, leaving};
 use proptest::prelude::*;
 use rand_pcg::Pcg32;
 
-/// Quanta of a unit, and units of a full layer, as the documents have them.
+/// Quanta of a unit, and units of a full layer, as documented.
 const UNIT: f64 = 512.0;
 const FULL: f64 = 255.0;
 
@@ -16,7 +16,7 @@ const FREE: Limits = Limits {
     lasting: false,
 };
 
-/// Quanta that leave either side where R of the paint goes over along a reference cell, before they are rounded.
+/// Unrounded quanta that leave either side for a transfer rate R along a reference cell.
 fn powers([brush, canvas]: [f64; 2], r: f64, t: f64) -> [f64; 2] {
     let kept = maulstick_num::powf(1.0 - r, t);
     [brush, canvas].map(|quanta| quanta.min(FULL * UNIT) * (1.0 - kept))
@@ -57,7 +57,7 @@ proptest! {
         let both = [brush * UNIT, canvas * UNIT].map(f64::floor);
         let meeting = meeting(both, r, t);
         let expected = powers(both, r, t);
-        // Near a full layer one side waits for the other, and of the last unit no more goes than there is.
+        // Near a full layer one side waits for the other, and no more than the rest of the last unit goes over.
         let left = |side: usize| both[side] - expected[side];
         prop_assume!(brush + canvas < FULL && left(0) > UNIT && left(1) > UNIT);
         let got = mean(&meeting, &FREE);
@@ -71,7 +71,7 @@ proptest! {
         prop_assert!(wrong.iter().zip(both).all(|(wrong, both)| *wrong > both), "it creates paint");
     }
 
-    /// Two halves of a way are the way.
+    /// Two halves of a path give the result of the whole.
     #[test]
     fn the_way_may_be_cut(volume in 1.0..200.0f64, r in 0.05..0.5f64, t in 0.2..2.0f64) {
         let [whole, _] = powers([volume * UNIT, 0.0], r, t);
@@ -82,7 +82,7 @@ proptest! {
         prop_assert!((mean - whole).abs() < 0.01 * UNIT + 1.0);
     }
 
-    /// Saturation: neither side gets more than it holds, and no volume wraps.
+    /// Saturation: neither side exceeds its capacity, and no volume wraps.
     #[test]
     fn full_layers_take_no_more(
         brush in 0.0..1000.0f64, canvas in 0.0..1000.0f64, rate in 0.0..1.0f32, threshold in 0.0..1.0f32,
@@ -99,21 +99,21 @@ proptest! {
     }
 }
 
-/// What an oracle of saturation leaves out.
+/// Fault of an oracle of saturation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     None,
-    /// The brush takes up more than it holds.
+    /// The brush exceeds its capacity.
     FullBrush,
-    /// The canvas gets more than it holds.
+    /// The canvas exceeds its capacity.
     FullCanvas,
-    /// What is beyond 255 units begins at 0 again.
+    /// A volume beyond 255 units wraps to 0.
     Wraps,
-    /// The stain goes with the rest.
+    /// The stain goes over with the rest.
     Stain,
 }
 
-/// Quanta that go over in f64: whole units, as far as there are any and there is room for them.
+/// Transferred quanta in f64: whole units, as far as there are any and room for them.
 fn goes(
     [brush, canvas]: [f64; 2],
     rate: f64,
@@ -173,7 +173,7 @@ fn saturation_is_that_of_the_oracle_and_each_fault_is_found() {
         });
         wrong.count()
     };
-    // Where a volume and its threshold make a whole unit but for rounding.
+    // A volume and its threshold that make a whole unit but for rounding.
     let rounded = off(Fault::None);
     assert!(rounded < 20, "{rounded}");
     for fault in [
@@ -188,7 +188,7 @@ fn saturation_is_that_of_the_oracle_and_each_fault_is_found() {
     }
 }
 
-/// A row of two paints: what one side loses the other gains, and both colours go over as the sides have them.
+/// A row of two paints: one side gains what the other loses, in the proportions of the donor.
 #[test]
 fn paints_go_over_alike_and_none_is_lost() {
     let cells = 500;
@@ -226,7 +226,7 @@ fn paints_go_over_alike_and_none_is_lost() {
             let gained = canvas[slot][i] - before.1[slot][i];
             assert_eq!(gained, before.0[slot][i] - brush[slot][i], "cell {i}");
         }
-        // C_new = (V_r·C_i + V'_l·C'_i)/(V_r + V'_l): the shares of a paint after it.
+        // C_new = (V_r·C_i + V'_l·C'_i)/(V_r + V'_l): the shares of a paint afterwards.
         let [given, taken] = leaving(
             &Meeting {
                 brush: totals.0[i],
@@ -246,7 +246,7 @@ fn paints_go_over_alike_and_none_is_lost() {
             let (own, other) = (f64::from(before.1[0][i]) / c, f64::from(before.0[0][i]) / b);
             let expected = ((c - taken) * own + given * other) / (c - taken + given);
             let got = f64::from(canvas[0][i]) / f64::from(after);
-            // A threshold near 1 rounds either way.
+            // A threshold near 1 may round either way.
             if (got - expected).abs() < 1e-3 {
                 mixed += 1;
             }

@@ -1,4 +1,4 @@
-//! The advection by itself, beside a plain copy: for the benchmark.
+//! The advection alone, compared with a plain copy, for the benchmark.
 
 use std::time::{Duration, Instant};
 
@@ -23,10 +23,9 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// A square of `side` × `side` cells with so many paints, 40 µm of each, that moves by a third of a cell.
+    /// A square of `side` × `side` cells with `paints` paints, 40 µm of each, that moves by a third of a cell.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn new(gpu: Device, side: usize, paints: usize) -> Result<Self, GpuError> {
         let made = |kernels: &'static [Kernel], name: &str| -> Vec<Pipeline> {
             let named = kernels.iter().filter(|kernel| kernel.name == name);
@@ -82,10 +81,9 @@ impl Measured {
         Ok(())
     }
 
-    /// Time of so many advections, both passes of each, submitted together.
+    /// Duration of `times` advections, two passes each, submitted together.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn advection(&mut self, times: usize) -> Result<Duration, GpuError> {
         let side = self.side as u32;
         let groups = [
@@ -102,10 +100,9 @@ impl Measured {
         )
     }
 
-    /// Time to copy all counts and their sums so many times, in as many dispatches.
+    /// Duration of copying all counts and their sums `times` times, in as many dispatches.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn copy(&mut self, times: usize) -> Result<Duration, GpuError> {
         let half = (self.side * self.side * (1 + self.paints) / 2) as u32;
         let groups = [[half.div_ceil(256), 1]; 2];
@@ -153,7 +150,7 @@ impl Measured {
     }
 }
 
-/// Statistics of a step that touches all of a square of `side` cells, as step.wgsl lays them out.
+/// Statistics of a step that touches all of a square of `side` cells, in the layout of step.wgsl.
 fn stats_of_square(side: u32) -> [u32; 24] {
     let mut stats = [0; 24];
     stats[4 + 11..4 + 15].copy_from_slice(&[65536, 65536, side, side]);

@@ -1,13 +1,13 @@
 //! IMPaSTo on the device: the stages of the paint model `impasto`, in WGSL.
 //!
-//! Counts stay whole: all that is asked of one donor is summed in integers, truncated, and moved from
-//! one side to the other.
+//! Counts stay whole: all requests to one donor are summed in integers, truncated, and moved from one side to the
+//! other.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | `stages` | the stages in their order |
 //! | [`measure`] | the advection beside a copy, for the benchmark |
-//! | [`probe`] | what single stages leave, for tests |
+//! | [`probe`] | results of single stages, for tests |
 
 pub mod measure;
 pub mod probe;
@@ -18,34 +18,33 @@ use std::ops::Range;
 use crate::Impasto;
 use maulstick_model::interface::Step;
 
+use maulstick_gpu::steps::device_layout::DeviceLayout;
 use maulstick_gpu::steps::model::{GpuModel, Planner};
 use maulstick_gpu::steps::record::{Grid, StepRecord};
-use maulstick_gpu::steps::residence::Residence;
 use maulstick_gpu::steps::workspace::{Batch, Call};
 use maulstick_gpu::{Choice, Device, GpuError, OnDevice};
 use stages::{KERNELS, PUSHES};
 
 /// The paint model on a device.
 ///
-/// # Errors
-/// A [`GpuError`] where the driver does not take the shaders.
+/// # Errors A [`GpuError`] where the driver rejects the shaders.
 pub fn model(gpu: Device) -> Result<GpuModel, GpuError> {
     GpuModel::new(gpu, &KERNELS, Box::new(Steps), Box::<Impasto>::default())
 }
 
-/// The same for the registry.
+/// Constructor for the registry.
 pub(crate) fn make(gpu: Device, _choice: Choice) -> Result<OnDevice, GpuError> {
     model(gpu).map(OnDevice::from)
 }
 
-/// Steps of impasto as stages.
+/// Planner of impasto's steps.
 struct Steps;
 
 impl Planner for Steps {
     fn plan(
         &self,
         step: &Step<'_>,
-        on: &Residence,
+        on: &DeviceLayout,
         _number: u64,
         batch: &mut Batch,
     ) -> Option<Range<usize>> {
@@ -64,8 +63,8 @@ impl Planner for Steps {
     }
 }
 
-/// The cells on which paint may move: it is pushed a cell farther than the brush comes. None where the head is beside
-/// the surface.
+/// The cells on which paint may move: it is pushed a cell beyond the reach of the brush. `None` where the head is
+/// beside the surface.
 fn pushed(step: &Step<'_>) -> Option<Grid> {
     let touched = step.window.area(step.bounds.0, step.bounds.1);
     if touched.is_empty() {

@@ -1,4 +1,4 @@
-//! What stages of a step leave on the device: for the tests that hold each beside its twin.
+//! State on the device after a stage of a step, for tests that compare each stage with its twin.
 
 use bytemuck::pod_collect_to_vec;
 use maulstick_model::footprint::contact::Contact;
@@ -10,20 +10,20 @@ use maulstick_gpu::device::{Device, GpuError};
 use maulstick_gpu::steps::kernels::Binding;
 use maulstick_gpu::steps::probing::Probing;
 
-/// What is looked at.
+/// State after a stage.
 #[derive(Clone, Debug)]
 pub struct Probe {
-    /// Lowest column and row of the window that the step's grid holds.
+    /// Lowest column and row of the window in the step's grid.
     pub from: [usize; 2],
     /// Columns and rows of the grid.
     pub size: [usize; 2],
-    /// The cells in contact, row after row; `local` is their place in the grid.
+    /// The cells in contact, row by row; `local` is their place in the grid.
     pub contacts: Vec<Contact>,
     /// Velocities through the right and the upper face of each cell of the grid.
     pub faces: Vec<[f32; 2]>,
 }
 
-/// Stages of steps, one after the other.
+/// Stages of steps, run separately.
 pub struct Prober {
     stages: Probing<Steps>,
 }
@@ -31,19 +31,16 @@ pub struct Prober {
 impl Prober {
     /// The stages on a device.
     ///
-    /// # Errors
-    /// A [`GpuError`] where the driver does not take the shaders.
+    /// # Errors A [`GpuError`] where the driver rejects the shaders.
     pub fn new(gpu: Device) -> Result<Self, GpuError> {
         let stages = Probing::new(gpu, &KERNELS, Steps)?;
         Ok(Self { stages })
     }
 
-    /// Does those stages of a step that come up to the last one called `last`, writes what they did to
-    /// its window and load, and tells what else they left. None where the head is beside the surface,
-    /// or its window is too large.
+    /// Runs the stages of a step up to the last one called `last`, writes their result to its window and load, and
+    /// returns their other results. `None` where the head is beside the surface, or its window is too large.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn run(&mut self, step: &mut Step<'_>, last: &str) -> Result<Option<Probe>, GpuError> {
         let (Some(probed), Some(grid)) = (self.stages.run(step, last)?, pushed(step)) else {
             return Ok(None);

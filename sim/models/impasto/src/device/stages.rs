@@ -6,10 +6,10 @@ use maulstick_model::transfer::{POOL, SWAP_FILM};
 
 use maulstick_gpu::steps::kernels::{Binding as B, Groups, Kernel, RASTERIZER};
 
-/// What the model's stages share.
+/// Shared WGSL of the model's stages.
 const COMMON: &str = include_str!("shaders/common/axes.wgsl");
 
-/// The stage that pushes paint along an axis.
+/// Name of the stage that pushes paint along an axis.
 pub(crate) const PUSHES: &str = "advection";
 
 /// The stages of a step, in order.
@@ -138,5 +138,5 @@ const fn copy(constants: &'static [(&'static str, f64)]) -> Kernel {
     }
 }
 
-/// What the advection is measured beside, in as many parts.
+/// Copies as the reference of the advection's benchmark, in as many parts.
 pub(crate) static COPIES: [Kernel; 2] = [copy(&[("second", 0.0)]), copy(&[("second", 1.0)])];

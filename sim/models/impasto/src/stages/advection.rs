@@ -15,50 +15,49 @@ use maulstick_num::wide;
 use super::velocity::Faces;
 use maulstick_model::footprint::shares_of;
 
-/// Paint that stays on a cell however hard it is brushed, unless the painter says otherwise, quanta: 3 µm of stain (§
-/// 6.4.1, size).
+/// Default stain: paint that stays on a cell however hard it is brushed, quanta, 3 µm (§ 6.4.1, size).
 pub const STAIN: f32 = 2013.0;
-/// Kept free on a cell, quanta: more than what is truncated.
-const SPARE: f32 = 64.0;
-/// Share of the capacity of a cell up to which all inflow has room.
+/// Capacity kept free on a cell, quanta: more than the truncation error.
+const SPARE_QUANTA: f32 = 64.0;
+/// Share of a cell's capacity up to which all inflow fits.
 const HALF_EMPTY: f32 = 0.1;
 
-/// Room for a step.
+/// Buffers of a step.
 #[derive(Clone, Debug, Default)]
 pub struct Advection {
     /// Wet quanta of all paints on each cell.
     totals: Vec<f32>,
     /// Share of its paint that a cell may give.
     loose: Vec<f32>,
-    /// Share of what comes that a cell has room for.
+    /// Share of the inflow that fits a cell.
     room: Vec<f32>,
-    /// One for each core.
+    /// Buffers, one for each core.
     movers: Vec<Mover>,
 }
 
-/// Room to move one paint.
+/// Buffers for moving one paint.
 #[derive(Clone, Debug, Default)]
 struct Mover {
-    /// Its quanta.
+    /// Its quanta by cell.
     plane: Vec<f32>,
-    /// Quanta that leave each cell for the next and for the one before.
+    /// Quanta from each cell to the next and to the one before.
     sent: [Vec<f32>; 2],
 }
 
 /// Fluxes of all paints along an axis.
 #[derive(Clone, Copy, Debug)]
 struct Flux<'a> {
-    /// Of the window.
+    /// Area of the window.
     area: Area,
     /// Columns of the window.
     width: usize,
     /// Through the face of each cell towards the next.
     velocity: &'a [f32],
-    /// Distance between neighbouring cells along the axis, in the arrays.
+    /// Offset of the neighbouring cell along the axis, in the arrays.
     next: usize,
-    /// See [`Advection`].
+    /// Loose shares; see [`Advection`].
     loose: &'a [f32],
-    /// See [`Advection`]; empty where all that comes has room.
+    /// Shares of inflow that fit, see [`Advection`]; empty where all of it fits.
     room: &'a [f32],
 }
 
@@ -72,7 +71,6 @@ pub enum Axis {
 }
 
 wide! {
-    /// Moves these paints.
     fn move_planes(mover: &mut Mover, flux: &Flux<'_>, planes: &mut [&mut Vec<f32>]) {
         // A loop, as a closure would not be compiled for wide registers.
         for plane in planes {
@@ -88,7 +86,7 @@ wide! {
 }
 
 wide! {
-    /// Wet quanta of all paints on each cell, and what share of them is loose.
+    /// Wet quanta of all paints on each cell, and the loose share of them.
     fn weigh(window: &Window, area: &Area, stain: f32, totals: &mut [f32], loose: &mut [f32]) {
         window.weigh(area, totals);
         for (loose, total) in loose.iter_mut().zip(totals) {
@@ -98,8 +96,7 @@ wide! {
 }
 
 impl Advection {
-    /// Moves the wet paint of an area along both axes, `first` before the other; `stain` quanta stay
-    /// on each cell.
+    /// Moves the wet paint of an area along both axes, `first` before the other; `stain` quanta stay on each cell.
     pub fn run(&mut self, area: Area, faces: &Faces, window: &mut Window, first: Axis, stain: f32) {
         if area.is_empty() {
             return;
@@ -147,7 +144,7 @@ impl Advection {
         });
     }
 
-    /// A cell holds at most one unit: inflow beyond it stays with its donors.
+    /// Bounds the inflow by a cell's capacity of one unit; the excess stays with its donors.
     #[inline(always)]
     fn find_room(&mut self, velocity: &[f32], next: usize) {
         self.room.clear();
@@ -160,7 +157,7 @@ impl Advection {
         }
         let cells = self.totals.len();
         self.room.resize(cells, 0.0);
-        // At most this share of a column leaves, whatever its slope is.
+        // Greatest share that leaves a column, whatever its slope.
         let leaves = |v: f32, from: usize| v * (2.0 - v) * self.totals[from] * self.loose[from];
         for (cell, v) in velocity.iter().enumerate().take(cells.saturating_sub(next)) {
             if *v > 0.0 {
@@ -170,7 +167,7 @@ impl Advection {
             }
         }
         for (room, total) in self.room.iter_mut().zip(&self.totals) {
-            let free = (CELL_MAX as f32 - SPARE - total).max(0.0);
+            let free = (CELL_MAX as f32 - SPARE_QUANTA - total).max(0.0);
             *room = if *room > free { free / *room } else { 1.0 };
         }
     }

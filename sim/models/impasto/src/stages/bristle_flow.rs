@@ -1,8 +1,8 @@
 //! Paint within the head: paint inside a strip rises to its surface as the film there is used up, the film's excess
 //! over its fill goes inside, and inside it creeps along the strip.
 //!
-//! It does so in every strip, also in one that is the lowest of no cell just now: how many are depends on the size of
-//! cells.
+//! This happens in every strip, even in one that is the lowest of no cell at the moment, because their number depends
+//! on the cell size.
 
 use maulstick_num::select::larger;
 use maulstick_num::wide;
@@ -11,7 +11,7 @@ use maulstick_model::brush::load::{PaintOnBrush, film_share};
 use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 use maulstick_model::interface::Step;
 
-/// Counts a step and moves paint within the strips whose turn it is.
+/// Counts a step and moves paint within the strips of this step.
 pub fn flow(step: &mut Step<'_>) {
     step.load.count_step();
     let steps = step.load.steps();
@@ -54,7 +54,7 @@ wide! {
     }
 }
 
-/// The first of those strips, or pairs of them, whose turn it is: every [`BrushTraits::FLOW_STEPS`]th.
+/// The first of the strips, or pairs of them, of this step: every [`BrushTraits::FLOW_STEPS`]th.
 #[inline(always)]
 pub(super) fn first_of(steps: u64) -> usize {
     let every = BrushTraits::FLOW_STEPS;
@@ -89,7 +89,7 @@ fn thinner_in(strip: usize, thinner: &PaintOnBrush<'_>, all: f64) -> f64 {
     if all > 0.0 { thin / all } else { 0.0 }
 }
 
-/// True if not a quantum would move, as in most strips of a brush.
+/// True if no quantum would move, as in most strips of a brush.
 #[inline(always)]
 fn is_at_rest(
     film: &[u32; TEXELS_PER_STRIP],
@@ -107,8 +107,8 @@ fn is_at_rest(
     traits.refill * (f64::from(off) + 1.0) < 1.0 && traits.creep * f64::from(falls) < 1.0
 }
 
-/// Shares of what is inside a strip that go to the film, to the next texel and to the one before, and
-/// of the film that go inside.
+/// Shares of the paint inside a strip that go to the film, to the next texel and to the one before, and of the film
+/// that go inside.
 #[derive(Clone, Copy, Debug, Default)]
 struct Shares {
     out: [f64; TEXELS_PER_STRIP],
@@ -127,7 +127,7 @@ impl Shares {
     ) -> Self {
         let mut shares = Self::default();
         let (film, inside) = (film.map(f64::from), inside.map(f64::from));
-        // By quantum; of none nothing goes, whatever its share.
+        // Reciprocals of the counts; an empty one gives nothing, whatever its share.
         let by = inside.map(|count| 1.0 / larger(count, 1.0));
         for k in 0..TEXELS_PER_STRIP {
             let missing = full - film[k];
@@ -140,7 +140,7 @@ impl Shares {
             shares.onward[k] = larger(fall, 0.0) * by[k];
             shares.back[k + 1] = larger(-fall, 0.0) * by[k + 1];
         }
-        // On coarse cells a step is a long way: what would leave beyond what is there stays.
+        // On coarse cells a step is long: outflow beyond the stock stays.
         for k in 0..TEXELS_PER_STRIP {
             let leaves = shares.out[k] + shares.onward[k] + shares.back[k];
             let stays = 1.0 / larger(leaves, 1.0);
@@ -155,8 +155,7 @@ impl Shares {
 /// A share of a count, truncated.
 #[inline(always)]
 pub(super) fn part(count: u32, share: f64) -> u32 {
-    // The low bits of a number from 2⁵² on are its whole part, and unlike a cast they are read four at
-    // a time.
+    // The low bits of a number from 2⁵² on are its integer part, and unlike a cast they are read four at a time.
     const WHOLE: f64 = 4_503_599_627_370_496.0;
     ((f64::from(count) * share).floor() + WHOLE).to_bits() as u32
 }
@@ -188,7 +187,7 @@ mod tests {
 
     use super::*;
 
-    /// A strip is left as it is where nothing would move, and only there: one quantum more moves.
+    /// Exactly the strips without any movement are skipped: one quantum more moves.
     #[test]
     fn only_strips_at_rest_are_left_out() {
         let file = BrushFile::library("round").expect("round");

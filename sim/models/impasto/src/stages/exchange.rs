@@ -1,9 +1,8 @@
 //! Stages 4 and 5: paint goes from brush to canvas or from canvas to brush (Baxter 2004, § 6.5).
 //!
-//! Algorithm 3 decides for each cell, once for both sides, how much is transferred. Where both carry paint, their films
-//! are also swapped: so a brush that is full, or that carries as much as the canvas, still takes on the colour that it
-//! meets. Cells that draw on one brush texel have their demands summed, scaled together where they exceed what it
-//! holds, and truncated once.
+//! Algorithm 3 computes the transfer of each cell, once for both sides. Where both carry paint, their films are also
+//! swapped, so a brush that is full, or that carries as much as the canvas, still takes on its colour. The demands of
+//! cells on one brush texel are summed, scaled together where they exceed its stock, and truncated once.
 
 use maulstick_canvas::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
 use maulstick_num::fork_join::{Balance, each};
@@ -19,31 +18,30 @@ use maulstick_model::footprint::shares_of;
 use maulstick_model::interface::{Handling, Step, Transfer};
 use maulstick_model::transfer::{Exchanging, POOL};
 
-/// Room for a step. Of the brush's many texels few touch at a time: these are numbered afresh in each
-/// step, so that the others cost nothing.
+/// Buffers of a step. Few of the brush's many texels touch at a time: these are renumbered in each step, so that the
+/// others cost nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Exchange {
-    /// The contacts, parted among the cores; those beyond `used` are of other steps.
+    /// Contacts distributed to the cores; shares beyond `used` are left from other steps.
     shares: Vec<Share>,
     used: usize,
-    /// The texels that touch.
     texels: Vec<u32>,
-    /// The place of each texel of the brush in `texels`; [`ABSENT`] but for those that touch.
+    /// Index of each texel of the brush in `texels`; [`ABSENT`] unless it touches.
     place_of: Vec<u32>,
     granted: Granted,
     balance: Balance,
-    /// Of one paint: what each of these texels gives by quantum that is wanted of it.
+    /// For one paint, the share of the demand that each of these texels grants.
     gives: Vec<f32>,
-    /// Of one paint: quanta on each of these texels.
+    /// For one paint, the quanta on each of these texels.
     held: Vec<f32>,
 }
 
 /// Paint that each touching texel gives and takes.
 #[derive(Clone, Debug, Default)]
 struct Granted {
-    /// Quanta wanted of it, and offered to it; then what it gives by quantum in its film.
+    /// Quanta demanded from the texel, and offered to it; later the grant per quantum in its film.
     asked: Vec<[f32; 2]>,
-    /// Share of its offers that it takes.
+    /// Share of the offers that the texel takes.
     taken: Vec<f32>,
     /// Quanta in its film.
     film: Vec<f32>,
@@ -53,17 +51,17 @@ struct Granted {
 #[derive(Clone, Debug, Default)]
 struct Share {
     meetings: Meetings,
-    /// Quanta that each contact wants from the brush, and that it gives to it.
+    /// Quanta that each contact demands from the brush, and offers to it.
     wants: [Vec<f32>; 2],
-    /// Its cell.
+    /// Cell of each contact.
     cells: Vec<u32>,
-    /// The place of each contact's texel among those that touch.
+    /// Index of each contact's texel among those that touch.
     places: Vec<u32>,
     /// Share of the wet paint on each contact's cell that goes to the brush.
     shares: Vec<f32>,
-    /// Share of what is taken up that leaves each contact's cell.
+    /// Share of the paint taken up that leaves each contact's cell.
     leaves: Vec<f32>,
-    /// Quanta by which one paint changes on each of the texels: a wide one holds more than an `f32` counts.
+    /// Change of one paint on each of the texels, quanta: a wide one exceeds the exact range of `f32`.
     change: Vec<i32>,
 }
 
@@ -104,15 +102,15 @@ impl Meetings {
     }
 }
 
-/// The place of a texel that does not touch.
+/// Index of a texel that does not touch.
 const ABSENT: u32 = u32::MAX;
-/// Share of a film that is used up entirely: reduced so that rounding never takes more than there is.
+/// Greatest share of a film used up at once: reduced so that rounding never takes more than there is.
 const SAFE_SHARE: f32 = 1.0 - 1.0 / 1_048_576.0;
 
 /// State of a contact before the exchange.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Meeting {
-    /// Way of the brush, reference cells.
+    /// Path of the brush, reference cells.
     pub travel: f32,
     /// Share of the cell that is covered, 0 to 1.
     pub cover: f32,
@@ -208,7 +206,7 @@ struct Cells<'a> {
 }
 
 impl Exchange {
-    /// Exchanges the paint of one step; by slot, what came onto the canvas from nowhere.
+    /// Exchanges the paint of one step; by slot, the uncounted quanta added to the canvas.
     pub fn run(&mut self, footprint: &Footprint, step: &mut Step<'_>) -> [i64; SLOTS] {
         let contacts = footprint.contacts.len();
         let ranges = self.balance.cut(contacts, shares_of(contacts));
@@ -262,8 +260,8 @@ impl Exchange {
         }
     }
 
-    /// One slot, both ways; the quanta that came from nowhere. What the brush gains is noted in the
-    /// shares' `change`.
+    /// Exchanges one slot, both ways, and returns the uncounted quanta. The gain of the brush is in the shares'
+    /// `change`.
     fn exchange(&mut self, slot: usize, step: &mut Step<'_>) -> i64 {
         self.held.clear();
         match step.load.film_of(slot) {
@@ -291,7 +289,7 @@ impl Exchange {
         let counted = sponge || step.lasting;
         let before = if counted { self.on_cells(plane) } else { 0 };
         let (gives, mut rest) = (&self.gives, &mut plane[..]);
-        // Contacts come in the order of their cells: the last share has the last of them.
+        // Contacts are in the order of their cells, so the last share has the last of them.
         let shares = self.shares[..self.used].iter_mut().rev();
         let shares = shares.filter_map(|share| {
             let first = *share.cells.first()? as usize;
@@ -301,14 +299,15 @@ impl Exchange {
         each(&mut shares.collect::<Vec<_>>(), |(share, cells)| {
             swap_paint(share, gives, cells);
         });
-        // Otherwise what one side gains the other loses.
+        // Counted paint: one side gains what the other loses.
         if !counted {
             return 0;
         }
         let changes = self.in_use().iter().flat_map(|share| &share.change);
-        let onto_brush: i64 = match sponge {
-            true => 0,
-            false => changes.map(|change| i64::from(*change)).sum(),
+        let onto_brush: i64 = if sponge {
+            0
+        } else {
+            changes.map(|change| i64::from(*change)).sum()
         };
         self.on_cells(step.window.plane_mut(slot)) - before + onto_brush
     }
@@ -334,7 +333,7 @@ impl Exchange {
         }
     }
 
-    /// The shares of this step.
+    /// Shares of this step.
     fn in_use(&self) -> &[Share] {
         &self.shares[..self.used]
     }
@@ -356,7 +355,7 @@ impl Share {
         );
     }
 
-    /// Adds up what is wanted of each texel, and offered to it.
+    /// Sums the demands on each texel, and the offers to it.
     fn ask(&self, asked: &mut [[f32; 2]]) {
         let [given, taken] = &self.wants;
         for (place, (given, taken)) in self.places.iter().zip(given.iter().zip(taken)) {
@@ -366,9 +365,9 @@ impl Share {
         }
     }
 
-    /// Paint of each contact's cell that goes to the brush.
+    /// Computes the paint of each contact's cell that goes to the brush.
     ///
-    /// Paint that lasts loses only as much as it gains: it takes on the brush's colour, but never becomes less.
+    /// Paint that lasts loses only as much as it gains: it takes on the brush's colour without loss of volume.
     fn share(&mut self, granted: &Granted, lasting: bool) {
         self.shares.clear();
         let offers = self.wants[1].iter().zip(&self.places);
@@ -394,7 +393,7 @@ impl Share {
 }
 
 impl Granted {
-    /// Scales what is wanted of each texel, and offered to it, to what it has and has room for.
+    /// Scales the demands on each texel, and the offers to it, to its stock and capacity.
     fn grant(&mut self, texels: &[u32], load: &BrushLoad, traits: &BrushTraits, sponge: bool) {
         let most = traits.film_most as f32;
         self.taken.clear();
@@ -412,7 +411,7 @@ impl Granted {
             } else {
                 1.0
             };
-            // By quantum of all paints in the film, so that a paint's share comes out.
+            // By quantum of all paints in the film, from which each paint's share follows.
             *drawn = if film > 0.0 { granted / film } else { 0.0 };
             self.taken.push(taken);
             self.film.push(film);

@@ -1,7 +1,7 @@
 //! Levelling: wet paint flows under its own surface tension and weight until its yield stress holds it.
 //!
-//! The film is a thin layer of a Bingham fluid (Balmforth, Craster, Rust and Sassi 2006, "Viscoplastic
-//! flow over an inclined surface"): under a pressure gradient G it flows by
+//! The film is a thin layer of a Bingham fluid (Balmforth, Craster, Rust and Sassi 2006, "Viscoplastic flow over an
+//! inclined surface"): its flux under a pressure gradient G is
 //!
 //! q = −Y²(3h − Y)/6η · ∇p,  Y = max(0, h − τ_y/|G|),  p = ρg·s − γ∇²s,
 //!
@@ -10,8 +10,8 @@
 //! (Smith, Orchard and Rhind-Tutt 1961). Edges are pinned: paint flows onto bare ground only
 //! down a steep slope.
 //!
-//! A round is explicit, so on fine cells it can carry only so much. What it cannot, long waves above all, flows on
-//! grids of cells twice as large, up to those of [`COARSEST_M`] ([`coarse`]).
+//! A round is explicit, so on fine cells its flux is bounded. The rest, above all of long waves, flows on grids of
+//! cells twice as large, up to those of [`COARSEST_M`] ([`coarse`]).
 
 mod coarse;
 
@@ -26,7 +26,7 @@ use maulstick_num::{exp_f32, wide};
 pub(crate) const TENSION_N_PER_M: f64 = 0.03;
 /// Weight of oil paint, N/m³: 1,800 kg/m³ (lead-free tube colours lie at 1,200 to 2,200).
 pub(crate) const WEIGHT_N_PER_M3: f64 = 1800.0 * 9.81;
-/// The most of the difference of curvature between two cells that flows in one round, of a cell's height: an
+/// Greatest share of the difference of curvature between two cells that flows in one round, of a cell's height: an
 /// explicit scheme of fourth order is stable up to 1/32 in two dimensions.
 pub const STABLE: f64 = 1.0 / 40.0;
 
@@ -35,7 +35,7 @@ pub const ADVANCES: f32 = 1.0;
 
 /// Largest part of a cell's paint that flows through a face at once.
 const LARGEST_SHARE: f32 = 0.25;
-/// Largest cells of a coarser grid, m: on such and larger ones a second's rounds level all that a stroke leaves.
+/// Largest cells of a coarser grid, m: on these and larger ones a second's rounds level all traces of a stroke.
 const COARSEST_M: f64 = 1.25e-4;
 
 /// Rheology of a paint.
@@ -48,8 +48,8 @@ pub struct Body {
 }
 
 impl Body {
-    /// Paint from the tube that the brush has just worked: oil colours yield at tens to hundreds of Pa at rest, and
-    /// at a fraction of that as long as their structure is sheared apart.
+    /// Paint from the tube that the brush has just worked: oil colours yield at tens to hundreds of Pa at rest, and at
+    /// a fraction of that while their structure is sheared apart.
     pub const TUBE: Self = Self {
         yield_pa: 12.0,
         viscosity_pa_s: 20.0,
@@ -63,35 +63,35 @@ pub fn thinned(thinner: f32) -> [f32; 2] {
     [yield_left(thinner), 1.0 / exp_f32(-THINS * thinner)]
 }
 
-/// ln of how much thinner alone is more fluid than paint.
+/// ln of the fluidity of thinner alone relative to paint.
 pub(crate) const THINS: f32 = 7.0;
 
-/// Scaling of the flow of one round: everything in cells of `cell_m`, for `seconds`.
+/// Scaling of the flow of one round: all in cells of `cell_m`, for `seconds`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Round {
     /// Gradient by difference of curvature between two cells, in yields of paint one cell thick.
     tension: f32,
-    /// The same by difference of height.
+    /// Gradient by difference of height between two cells, in yields of paint one cell thick.
     weight: f32,
-    /// Mobility of paint one cell thick, by `tension`.
+    /// Mobility of paint one cell thick, divided by `tension`.
     mobility: f32,
-    /// The most of a mobility.
+    /// Greatest mobility.
     most: f32,
-    /// The part of a mobility that the finer cells have.
+    /// Mobility that the finer grid has already used.
     finer: f32,
     /// Number of coarser grids.
     coarser: u32,
     /// Height of a quantum, cells.
     to_cells: f32,
-    /// Quanta below which a cell counts as bare.
+    /// Quanta at or below which a cell counts as bare.
     bare: f32,
 }
 
 impl Round {
-    /// A round of so many seconds of a body on cells of `cell_m`; cells with at most `bare` quanta are dry.
+    /// A round of `seconds` of a body on cells of `cell_m`; cells with at most `bare` quanta are dry.
     #[must_use]
     pub fn new(body: Body, cell_m: f64, seconds: f64, to_cells: f32, bare: f32) -> Self {
-        // A yield stress of nothing: so small that it holds nothing.
+        // A yield stress of zero is replaced by one that holds nothing.
         let yields = body.yield_pa.max(1e-9);
         let mobility = seconds * yields / body.viscosity_pa_s.max(1e-9);
         let sides = (1..).map(|level| cell_m * f64::from(1 << level));
@@ -109,42 +109,41 @@ impl Round {
     }
 }
 
-/// Room for the flow of an area.
+/// Buffers for the flow of an area.
 #[derive(Clone, Debug, Default)]
 pub struct Levelling {
-    /// Cells of a row, with two more on either side.
+    /// Cells of a row, including two on either side.
     width: usize,
     /// Height of the wet paint, cells.
     wet: Vec<f32>,
     /// Height of its surface, cells.
     surface: Vec<f32>,
-    /// Its Laplacian.
+    /// Laplacian of the surface.
     curve: Vec<f32>,
-    /// Yield stress and fluidity by those of paint from the tube.
+    /// Yield stress and fluidity relative to paint from the tube.
     body: [Vec<f32>; 2],
-    /// Flow through the right and the upper face of each cell in a round, and in all, cells.
+    /// Flow through the right and the upper face of each cell in a round, and in total, cells.
     flows: [Vec<f32>; 2],
     sums: [Vec<f32>; 2],
-    /// Height of the wet paint before.
+    /// Height of the wet paint before the rounds, cells.
     before: Vec<f32>,
 }
 
 /// Columns and rows of a block, which rests as a whole.
 const BLOCK: usize = 16;
 
-/// Blocks of an area, row after row.
+/// Blocks of an area, row by row.
 #[derive(Clone, Debug, Default)]
 struct Blocks {
-    /// The largest flow through a face in each block in the last round, apart for each of its columns; empty before
-    /// the first round.
+    /// Largest flow through a face in each block in the last round, by column; empty before the first round.
     peaks: Vec<[f32; BLOCK]>,
-    /// Runs of columns whose blocks may flow in this round, of each row of blocks.
+    /// Runs of columns whose blocks may flow in this round, for each row of blocks.
     active: Vec<Vec<Range<usize>>>,
 }
 
 impl Blocks {
-    /// Begins a round: blocks may flow in which at least `rests` did in the last, and those beside them; in the first
-    /// all may.
+    /// Begins a round: it activates the blocks in which at least `rests` flowed in the last, and their neighbours; in
+    /// the first all.
     fn begin(&mut self, area: &Area, rests: f32) {
         let [across, up] = area.size.map(|cells| cells.div_ceil(BLOCK));
         let is_first = self.peaks.len() != across * up;
@@ -171,22 +170,22 @@ impl Blocks {
         self.peaks.resize(across * up, [0.0; BLOCK]);
     }
 
-    /// The most that flowed in the last round.
+    /// Largest flow of the last round.
     fn most(&self) -> f32 {
         self.peaks.iter().flatten().copied().fold(0.0, larger)
     }
 }
 
-/// Cells beside the area that are looked at.
+/// Number of cells beside the area that are read.
 pub const HALO: usize = 2;
 
 impl Levelling {
-    /// Adds the flow of so many rounds to the velocities through the right and upper faces of an area's cells: the
-    /// share of a donor's paint that goes through. Nothing leaves the area; beyond the window it is as at its edge.
-    /// Returns the largest flow of a round.
+    /// Adds the flow of several rounds to the velocities through the right and upper faces of an area's cells: shares
+    /// of a donor's paint. Nothing leaves the area; values beyond the window are those of its edge. Returns the largest
+    /// flow of a round.
     ///
-    /// Heights alone go through the rounds: paint follows once, by their sum. Where less than `rests` flowed in the
-    /// last round, and all around, nothing flows in the next.
+    /// Only heights go through the rounds; paint follows once, by their sum. A block in which less than `rests` flowed
+    /// in the last round, as in all its neighbours, is skipped in the next.
     pub fn add(
         &mut self,
         window: &Window,
@@ -214,7 +213,7 @@ impl Levelling {
         most
     }
 
-    /// Lets heights flow for so many rounds, on coarser grids first; the largest flow of a round.
+    /// Lets heights flow for several rounds, on coarser grids first; returns the largest flow of a round.
     fn run(&mut self, area: &Area, round: &Round, (rounds, rests): (u32, f32)) -> f32 {
         let mut blocks = Blocks::default();
         let mut most = self.flow_on_coarser(area, round, (rounds, rests));
@@ -240,7 +239,7 @@ impl Levelling {
             // The last block is read as a whole.
             plane.resize(self.width * height + BLOCK, 0.0);
         }
-        // Columns of the window that the halo covers, as far as the window goes.
+        // Columns of the window under the halo.
         let first = area.from[0].saturating_sub(HALO);
         let last = (area.from[0] + area.size[0] + HALO).min(limit[0]);
         let inset = first + HALO - area.from[0];
@@ -273,7 +272,7 @@ impl Levelling {
         }
     }
 
-    /// Changes the paint's rheology by its thinner.
+    /// Applies the effect of the thinner to the paint's rheology.
     fn soften(&mut self, window: &Window, area: &Area, to_cells: f32, thinner: Option<usize>) {
         for plane in &mut self.body {
             plane.clear();
@@ -294,7 +293,7 @@ impl Levelling {
     }
 }
 
-/// Values that levelling has read, of cells side by side in a row.
+/// Inputs of levelling for adjacent cells of a row.
 struct Run<'a> {
     wet: &'a [f32; BLOCK],
     surface: &'a [f32; BLOCK],
@@ -303,7 +302,7 @@ struct Run<'a> {
     fluid: &'a [f32; BLOCK],
 }
 
-/// As many cells of a plane as a block has columns.
+/// A block's width of cells of a plane.
 #[inline(always)]
 fn run(plane: &[f32], at: usize) -> &[f32; BLOCK] {
     plane[at..].first_chunk().expect("planes go on beyond")
@@ -323,7 +322,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// The share of what a donor may give that flows from a cell to the one beside it, and what it may give.
+/// The flow from a cell to its neighbour, as a share of the donor's available paint, and that paint.
 #[inline(always)]
 fn flow(round: &Round, bare: f32, own: &Run<'_>, next: &Run<'_>, i: usize) -> [f32; 2] {
     let (wet, wet_next) = (own.wet[i], next.wet[i]);
@@ -348,8 +347,8 @@ fn flow(round: &Round, bare: f32, own: &Run<'_>, next: &Run<'_>, i: usize) -> [f
 }
 
 wide! {
-    /// A round in the active blocks, row after row while they are in the cache. A row is carried over once those that
-    /// look at it have flowed.
+    /// A round in the active blocks, row by row while they are in the cache. A row is updated once the rows that read
+    /// it have flowed.
     fn flow_once(levelling: &mut Levelling, area: &Area, round: &Round, blocks: &mut Blocks) {
         let [across, rows] = area.size;
         let Blocks { peaks, active } = blocks;
@@ -374,7 +373,7 @@ wide! {
 }
 
 wide! {
-    /// Adds the shares of what donors had that flowed through the faces of an axis.
+    /// Adds the flows through the faces of an axis, as shares of the donors' paint.
     fn share_out(levelling: &Levelling, area: &Area, bare: f32, axis: usize, faces: &mut [f32]) {
         let next = [1, levelling.width][axis];
         for (row, faces) in faces.chunks_exact_mut(area.size[0]).enumerate() {
@@ -391,12 +390,12 @@ wide! {
     }
 }
 
-/// A row is carried over once the flow of so many rows above it is known: carrying row k changes the heights of rows k
-/// and k + 1, and the curvature of row k + 2 reads that of k + 1.
+/// Number of rows by which updates lag behind flows: updating row k changes the heights of rows k and k + 1, and the
+/// curvature of row k + 2 reads that of k + 1.
 const LAG: usize = 2;
 
 impl Levelling {
-    /// The place of a cell of the area.
+    /// Index of a cell of the area.
     fn at(&self, row: usize, column: usize) -> usize {
         (row + HALO) * self.width + HALO + column
     }
@@ -425,7 +424,7 @@ impl Levelling {
         peaks: &mut [[f32; BLOCK]],
     ) {
         let bare = round.bare * round.to_cells;
-        // Nothing goes through the border of the area: it would be lost there.
+        // Nothing crosses the border of the area, where it would be lost.
         let last = [
             area.size[0] - 1,
             if row + 1 < area.size[1] {
@@ -453,7 +452,7 @@ impl Levelling {
         }
     }
 
-    /// Carries over what flowed through the faces of a row's columns.
+    /// Applies the flows through the faces of a row's columns.
     #[inline(always)]
     fn carry(&mut self, row: usize, columns: &Range<usize>) {
         let (at, cells, width) = (self.at(row, columns.start), columns.len(), self.width);
@@ -462,7 +461,7 @@ impl Levelling {
             sums.zip(&flows[at..at + cells])
                 .for_each(|(sum, flow)| *sum += flow);
         }
-        // What comes from the left is carried with its own columns.
+        // The flow from the left is applied with its own columns.
         self.flows[0][at - 1] = 0.0;
         let right = &self.flows[0][at..at + cells];
         let left = &self.flows[0][at - 1..at - 1 + cells];

@@ -1,12 +1,12 @@
-//! IMPaSTo (Baxter 2004, ch. 6): paint that the brush pushes, leaves and takes up.
+//! IMPaSTo (Baxter 2004, ch. 6): paint that the brush pushes, deposits and takes up.
 //!
 //! A whole step reads from top to bottom in [`step`]; each stage of fig. 6.3 is a file.
 //!
 //! | module | stage |
 //! | --- | --- |
-//! | [`footprint`](maulstick_model::footprint) | 1: what of the head reaches which cell, and how deep |
-//! | [`velocity`] | 2: where the paint under it goes |
-//! | [`advection`] | 3: the paint goes there, counted |
+//! | [`footprint`](maulstick_model::footprint) | 1: contacts of the head with cells, and their depth |
+//! | [`velocity`] | 2: velocity of the paint under it |
+//! | [`advection`] | 3: motion of the paint, counted |
 //! | [`exchange`] | 4 and 5: Algorithm 3, both ways |
 //! | [`bristle_flow`] | paint moves within the head |
 //! | [`rest`], [`levelling`] | after the stroke |

@@ -1,5 +1,4 @@
-//! Levelling after a stroke: once the brush is lifted the paint levels for a second, as far as its yield stress lets
-//! it.
+//! Levelling after a stroke: once the brush is lifted the paint levels for a second, as far as its yield stress allows.
 
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::window::Area;
@@ -11,11 +10,11 @@ use super::velocity::Faces;
 
 /// Duration of the levelling once the brush is lifted, s.
 const SECONDS: f64 = 1.0;
-/// Rounds in which it does: of ripples six cells long a fifth is left after them.
+/// Number of rounds: they leave a fifth of ripples six cells long.
 const ROUNDS: u32 = 64;
-/// Of them heights alone go through so many, before their paint follows at once.
+/// Number of rounds of heights alone before their paint follows at once.
 const AT_ONCE: u32 = 16;
-/// Flow per round below which all rests, as a share of a cell.
+/// Flow per round below which blocks rest, as a share of a cell.
 const RESTS: f32 = 1e-3;
 
 /// Levels the paint of a stroke.

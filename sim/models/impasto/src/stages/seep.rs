@@ -1,9 +1,9 @@
-//! Paint between bristles: where a film has become thinner than the one beside it, paint seeps over,
-//! from strip to strip and along each strip.
+//! Paint between bristles: it seeps from a fuller film to a thinner one beside it, from strip to strip and along each
+//! strip.
 //!
-//! Only what evens the films out goes over, with the mixture of the fuller one: so the whole head feeds
-//! the bristles that touch, and two colours beside each other stay two. Between strips the yield stress holds
-//! a difference, so that a bristle that took up more paints its streak to the end.
+//! Only the amount that evens the films out goes over, with the mixture of the fuller one: so the whole head feeds the
+//! bristles that touch, and adjacent colours stay distinct. Between strips the yield stress holds a difference, so that
+//! a fuller bristle paints its streak to the end.
 
 use maulstick_num::select::larger;
 use maulstick_num::wide;
@@ -13,7 +13,7 @@ use maulstick_model::brush::load::PaintOnBrush;
 use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 use maulstick_model::interface::Step;
 
-/// Evens films out: in turn between strips of either order, and along them.
+/// Evens films out: between strips of either order in turn, and along them.
 pub fn seep(step: &mut Step<'_>) {
     let steps = step.load.steps();
     let seep = step.traits.seep;
@@ -97,9 +97,9 @@ wide! {
         let every = BrushTraits::FLOW_STEPS as usize;
         let strips = films.as_chunks_mut::<TEXELS_PER_STRIP>().0.iter_mut().enumerate();
         for (strip, films) in strips.skip(first_of(steps)).step_by(every) {
-            // In turn from the first and from the second texel on.
+            // Pairs start in turn at the first and at the second texel.
             let first = (steps as usize + strip) / every % 2;
-            // By each texel but the last, what goes between it and the next; of every second pair.
+            // For each texel but the last, the flow between it and the next; in every second pair.
             let (mut on, mut back, mut falls) = ([0.0; TEXELS_PER_STRIP], [0.0; TEXELS_PER_STRIP], 0.0);
             for k in 0..TEXELS_PER_STRIP - 1 {
                 let own = if k % 2 == first { share } else { 0.0 };
@@ -108,7 +108,7 @@ wide! {
                 back[k] = given(own, -fall, films[k + 1]);
                 falls = larger(falls, own * fall.abs());
             }
-            // Not a quantum would go.
+            // No quantum would move.
             if falls < 2.0 {
                 continue;
             }
@@ -133,7 +133,7 @@ wide! {
     }
 }
 
-/// The share of a film that goes over, where it is fuller by `fall` quanta than the one beside it.
+/// The share of a film that seeps, where it is fuller by `fall` quanta than its neighbour.
 #[inline(always)]
 fn given(share: f64, fall: f64, film: u32) -> f64 {
     0.5 * share * larger(fall, 0.0) / larger(f64::from(film), 1.0)

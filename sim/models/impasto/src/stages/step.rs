@@ -1,4 +1,4 @@
-//! The whole step.
+//! The whole step of impasto.
 
 use super::advection::{Advection, Axis};
 use super::bristle_flow::flow;
@@ -11,7 +11,7 @@ use maulstick_model::footprint::Footprint;
 use maulstick_model::interface::{PaintModel, Rest, Step, StepReport, Transfer};
 use maulstick_model::modes::{sample, vacuum};
 
-/// The paint model `impasto`, with room for its stages.
+/// The paint model `impasto`, with the buffers of its stages.
 #[derive(Debug, Default)]
 pub struct Impasto {
     footprint: Footprint,

@@ -1,9 +1,8 @@
 //! Stage 2: velocity of the paint under the brush (Baxter 2004, § 6.4.2).
 //!
-//! Paint sticks to brush and canvas, so on the whole it goes about half as far as the bristle above it, whose motion
-//! includes the rotation of the brush. Paint that the bristles press aside flows down the gradient of the penetration:
-//! −c·∇p. Both are found at the faces between cells, where paint crosses: so the squish from a cell into the next
-//! depends on these two alone.
+//! Paint sticks to brush and canvas, so it moves about half as far as the bristle above it, whose motion includes the
+//! rotation of the brush. Paint that the bristles press aside flows down the gradient of the penetration: −c·∇p. Both
+//! are computed at the faces between cells, so the squish from a cell into the next depends on these two alone.
 //!
 //! Thinned paint slips under the bristles and gives way sooner.
 
@@ -18,15 +17,15 @@ use maulstick_model::interface::Step;
 
 /// c of the squish: cells of flow in a step of one cell, per cell of penetration by cell.
 pub const SQUISH: f32 = 3.0;
-/// The squish diffuses paint by c·h in a step, h its height in cells; explicit steps are stable up to
-/// about this, so c is smaller in thicker paint.
+/// Bound of the squish, which diffuses paint by c·h in a step with h its height in cells: explicit steps are stable up
+/// to about this, so c is smaller in thicker paint.
 pub const STABLE: f32 = 0.04;
-/// Share of its grip that paint of thinner alone has lost.
+/// Share of its adhesion that thinner alone lacks.
 pub const SLIP: f32 = 0.5;
-/// By how much more of the penetration thinner alone flows.
+/// Additional flow of thinner alone, in multiples of the penetration.
 pub const EASE: f32 = 4.0;
 
-/// c under a height of wet paint in cells, where `thinner` is a share of it.
+/// c under a height of wet paint in cells, with a share `thinner`.
 #[must_use]
 #[inline]
 pub fn squish(wet: f32, thinner: f32) -> f32 {
@@ -40,19 +39,19 @@ pub fn follows(follows: f32, thinner: f32) -> f32 {
     follows * (1.0 - SLIP * thinner)
 }
 
-/// Effect of the contacts on the paint, and the share of a cell that goes through its faces in one step, on the cells
+/// Effect of the contacts on the paint: the share of a cell that goes through its faces in one step, on the cells
 /// [around](Footprint::around) the footprint.
 #[derive(Clone, Debug, Default)]
 pub struct Faces {
-    /// Through the right face of each cell, cells; what goes left is negative.
+    /// Share through the right face of each cell, cells; negative to the left.
     pub right: Vec<f32>,
-    /// Through its upper face.
+    /// Share through its upper face, cells.
     pub above: Vec<f32>,
     /// Motion of the paint by the bristles, x and y.
     push: [Vec<f32>; 2],
-    /// Penetration.
+    /// Penetration by cell.
     depth: Vec<f32>,
-    /// c; 0 where nothing touches.
+    /// c of the squish; 0 without contact.
     squish: Vec<f32>,
     /// Outflow of a cell along either axis, at least 1.
     leaves: [Vec<f32>; 2],
@@ -63,7 +62,7 @@ struct Along<'a> {
     push: &'a [f32],
     depth: &'a [f32],
     squish: &'a [f32],
-    /// Columns of cells, and how far apart neighbours are.
+    /// Columns of cells, and offset between neighbours.
     width: usize,
     next: usize,
 }
@@ -77,8 +76,8 @@ wide! {
 }
 
 impl Faces {
-    /// Finds the velocities in each [part](maulstick_model::brush::traits::BrushTraits::parts) of the step; no cell loses more
-    /// than it holds along either axis.
+    /// Computes the velocities in each [part](maulstick_model::brush::traits::BrushTraits::parts) of the step; no cell
+    /// loses more than its content along either axis.
     pub fn find(&mut self, footprint: &Footprint, step: &Step<'_>) {
         let [width, height] = footprint.around.size;
         let [push_x, push_y] = &mut self.push;
@@ -89,9 +88,10 @@ impl Faces {
         for (contact, quanta) in footprint.contacts.iter().zip(&footprint.wet) {
             let place = contact.local as usize;
             let thinner = thinner_of(contact, *quanta, step);
-            let wet = match contact.fraction > 0.0 {
-                true => contact.depth / contact.fraction,
-                false => 0.0,
+            let wet = if contact.fraction > 0.0 {
+                contact.depth / contact.fraction
+            } else {
+                0.0
             };
             // Paint in gaps below the bristles stays there.
             let follows = follows(step.traits.follows, thinner) * contact.cover * contact.fraction
@@ -124,7 +124,7 @@ impl Faces {
 }
 
 impl Faces {
-    /// Faces of an area through which nothing goes.
+    /// Faces of an area without flow.
     #[must_use]
     pub fn still(area: &Area) -> Self {
         let still = || vec![0.0; area.cells()];
@@ -135,13 +135,13 @@ impl Faces {
         }
     }
 
-    /// Lets nothing go through them.
+    /// Stops all flow.
     pub fn stop(&mut self) {
         self.right.fill(0.0);
         self.above.fill(0.0);
     }
 
-    /// Slows what leaves a cell to what it holds, along either axis.
+    /// Limits the outflow of a cell to its content, along either axis.
     pub fn limit(&mut self, width: usize) {
         let [leaves_x, leaves_y] = &mut self.leaves;
         limit(&mut self.right, leaves_x, 1, width);
@@ -176,7 +176,7 @@ impl Along<'_> {
     }
 }
 
-/// Slows what leaves a cell through both faces of an axis to what it holds.
+/// Limits the outflow of a cell through both faces of an axis to its content.
 #[inline(always)]
 fn limit(faces: &mut [f32], leaves: &mut Vec<f32>, next: usize, width: usize) {
     // The last column has its neighbour in the row above: there is no face between them.

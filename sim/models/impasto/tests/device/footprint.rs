@@ -8,13 +8,13 @@ use crate::crumpled::crumpled;
 use crate::device;
 use crate::scene::Scene;
 
-/// Roundings of a place below 128 cells, and of scores to 2⁻¹⁸ of the height that they may have.
-const NEAR: f32 = 2e-4;
+/// Tolerance of positions and scores: roundings of a place below 128 cells, and of scores to 2⁻¹⁸ of their range.
+const PLACE_TOLERANCE: f32 = 2e-4;
 
-/// How many of the cells that either touches have another contact.
+/// Number of cells touched by either with a different contact.
 fn apart(one: &[Contact], two: &[Contact]) -> (usize, usize) {
     let same = |a: &Contact, b: &Contact| {
-        let near = |a: f32, b: f32| (a - b).abs() <= NEAR;
+        let near = |a: f32, b: f32| (a - b).abs() <= PLACE_TOLERANCE;
         a.cell == b.cell
             && a.texel == b.texel
             && near(a.cover, b.cover)
@@ -37,7 +37,7 @@ fn apart(one: &[Contact], two: &[Contact]) -> (usize, usize) {
 #[test]
 fn the_same_cells_are_touched() {
     let mut prober = Prober::new(device()).expect("taken");
-    // Of a cell's way, and of one of several cells.
+    // Paths of one cell, and of several.
     let strips = (0..12).map(Scene::new);
     let strips = strips.chain((12..20).map(|seed| Scene::far(seed, 4.0)));
     let mut touched = 0;
@@ -49,14 +49,13 @@ fn the_same_cells_are_touched() {
         let (off, all) = apart(&footprint.contacts, &probe.contacts);
         println!("scene {seed}: {off} of {all} contacts differ");
         touched += all;
-        // Where two segments are equally deep, rounding decides; and places in faces that are seen edge on
-        // are rough.
+        // Where two segments are equally deep, rounding decides; places in faces seen edge on are inexact.
         let few = if scene.head.skin().is_some() { 20 } else { 400 };
         assert!(off * few <= all, "scene {seed}: {off} of {all}");
         let mut faulty = probe.contacts.clone();
         faulty
             .iter_mut()
-            .for_each(|contact| contact.depth += 2.0 * NEAR);
+            .for_each(|contact| contact.depth += 2.0 * PLACE_TOLERANCE);
         let (off, _) = apart(&footprint.contacts, &faulty);
         assert!(off * few > all, "a fault passes");
     }

@@ -1,5 +1,5 @@
-//! The stages of an impasto step on the device beside those of the processor, on the seeded scenes of
-//! these; whole strokes; a device that is lost.
+//! The stages of an impasto step on the device compared with the processor's, on seeded scenes; whole strokes; a lost
+//! device.
 
 #[path = "../oracle/scene.rs"]
 #[allow(
@@ -25,7 +25,7 @@ mod within_head;
 use maulstick_gpu::{Choice, Device};
 use maulstick_impasto::Impasto;
 
-/// An adapter: where there is no other, lavapipe.
+/// An adapter, lavapipe if there is no other.
 fn device() -> Device {
     Device::open(Choice::Forced)
         .expect("a Vulkan driver: install mesa-vulkan-drivers, as ./test does")

@@ -1,4 +1,4 @@
-//! Seeded scenes as stages on the device leave them.
+//! Results of stages on the device, on seeded scenes.
 
 use std::collections::BTreeMap;
 
@@ -9,11 +9,10 @@ use maulstick_model::footprint::contact::Contact;
 
 use crate::scene::{PAINTS, Random, Scene};
 
-/// Of velocities: a few operations on numbers of at most some cells.
-pub(crate) const SLOW: f64 = 4e-6;
+/// Tolerance of velocities: a few operations on numbers of at most some cells.
+pub(crate) const VELOCITY_TOLERANCE: f64 = 4e-6;
 
-/// A scene whose brush has made so many steps; some are nearly full, and some have all their strips on few
-/// texels.
+/// A scene after `steps` steps of its brush; some are nearly full, and some have all their strips on few texels.
 pub(crate) fn scene(seed: u64, steps: u64) -> Scene {
     let mut scene = Scene::new(seed);
     if seed % 4 == 3 {
@@ -25,7 +24,7 @@ pub(crate) fn scene(seed: u64, steps: u64) -> Scene {
                 *count = (random.range(0.2, 0.25) * QUANTA_PER_UNIT).floor() as f32;
             }
         }
-        // Beside the surface nothing lies.
+        // The area beside the surface is bare.
         let [right, top] = scene.window.limit();
         let width = scene.window.width();
         for (_, plane) in scene.window.planes_mut() {
@@ -61,7 +60,7 @@ pub(crate) struct Grid<'a> {
     probe: &'a Probe,
     pub(crate) touched: BTreeMap<[i64; 2], Contact>,
     pub(crate) limit: [i64; 2],
-    /// The contacts and one cell more to each side: from, up to but not with.
+    /// The contacts and one cell more to each side, half-open.
     around: [[i64; 2]; 2],
     row: i64,
 }

@@ -1,4 +1,4 @@
-//! Whole strokes: beside those of the processor.
+//! Whole strokes, compared with the processor's.
 
 use maulstick_gpu::Device;
 use maulstick_model::interface::PaintModel;
@@ -8,9 +8,9 @@ use crate::device;
 use crate::easel::{apart, easel_of, paint, stroke, volume};
 use crate::strokes;
 
-/// Mean and 99th percentile of ΔE00 by which the backends may differ.
+/// Tolerance of the backends' difference: mean and 99th percentile of ΔE00.
 const COLOURS: [f64; 2] = [0.3, 2.0];
-/// Share of the volume by which they may.
+/// Tolerance of the backends' difference of volume, as a share.
 const VOLUME: f64 = 1e-3;
 
 fn finer(finer: u32, gpu: Option<Device>) -> Painting {
@@ -43,7 +43,7 @@ fn both_backends_paint_the_same_stroke() {
     assert_eq!(gpu.report().quanta_missing, 0);
     let (cells, same) = (gpu.work().1 as f64, cpu.work().1 as f64);
     assert!((cells / same - 1.0).abs() < 0.01, "{cells} {same}");
-    // A stroke a fifth of a cell beside it is another one.
+    // A stroke a fifth of a cell aside is another one.
     let mut beside = easel(None);
     paint(&mut beside, "main", &stroke(1, 0.05, 48));
     paint(&mut beside, "main", &stroke(2, 1.55, 48));

@@ -1,4 +1,4 @@
-//! Stages 2 to 5: each on what the stages before it left, beside what its documentation says in plain f64.
+//! Stages 2 to 5: each on the results of the stages before it, compared with its documentation in plain f64.
 
 use std::collections::BTreeMap;
 
@@ -9,15 +9,15 @@ use maulstick_impasto::stages::velocity::{EASE, SQUISH, STABLE};
 use maulstick_model::transfer::{Exchanging, SWAP_FILM};
 
 use crate::device;
-use crate::probed::{Grid, SLOW, ahead, run, scene};
+use crate::probed::{Grid, VELOCITY_TOLERANCE, ahead, run, scene};
 use crate::scene::{CELL_M, Scene, lying};
 
-/// Each face's count is truncated, and f32 may round it over a whole number.
+/// Tolerance in quanta: each face's count is truncated, and f32 may round it over a whole number.
 const QUANTA: f64 = 2.0;
-/// Share of what moves that roundings add.
+/// Share of the flow that roundings add.
 const ROUNDING: f64 = 3e-6;
 
-/// Velocity through a face, before what leaves a cell is limited.
+/// Velocity through a face, before the outflow of a cell is limited.
 fn free(grid: &Grid<'_>, scene: &Scene, at: [i64; 2], axis: usize) -> f64 {
     let j = ahead(at, axis, 1);
     if !grid.is_on_surface(at) || !grid.is_on_surface(j) {
@@ -27,10 +27,11 @@ fn free(grid: &Grid<'_>, scene: &Scene, at: [i64; 2], axis: usize) -> f64 {
         grid.touched.get(&at).map(|c| {
             let (depth, cover) = (f64::from(c.depth), f64::from(c.cover));
             let total = f64::from(scene.window.total(c.cell as usize));
-            // Paint that the brush does not reach resists nothing.
-            let wet = match c.fraction > 0.0 {
-                true => total * f64::from(scene.traits.cells_per_quantum),
-                false => 0.0,
+            // Paint that the brush does not reach has no resistance.
+            let wet = if c.fraction > 0.0 {
+                total * f64::from(scene.traits.cells_per_quantum)
+            } else {
+                0.0
             };
             let thinner = scene.thinner.and_then(|slot| scene.window.plane(slot));
             let thinner = thinner.map_or(0.0, |plane| f64::from(plane[c.cell as usize]));
@@ -89,7 +90,7 @@ fn paint_follows_the_brush_and_goes_out_of_its_way() {
             }
         }
         println!("scene {seed}: velocities off by {worst:.2e}");
-        assert!(worst <= SLOW, "scene {seed}: {worst}");
+        assert!(worst <= VELOCITY_TOLERANCE, "scene {seed}: {worst}");
     }
     assert!(moving > 4000, "{moving}");
 }
@@ -191,15 +192,16 @@ fn paint_goes_where_it_is_pushed_and_none_is_lost() {
     assert!(turned > 100.0 * QUANTA, "the other order passes: {turned}");
 }
 
-/// Baxter 2004, Algorithm 3, by path length along which so much of one is `kept`, where a film bridges a gap,
-/// and what changes places: units to the canvas, back, and both ways. What a film has beyond its gap fills it
-/// sixteen times as fast, until both sides have as much; of a blade that is all, and it takes up what it reaches.
+/// Baxter 2004, Algorithm 3, by path length, of which a reference cell leaves `kept`, with a film that bridges a gap:
+/// units to the canvas, back, and swapped. The part of a film beyond its gap fills it sixteen times as fast, until both
+/// sides are equal. A blade does only that, and takes up all that it reaches.
 fn wanted([a_b, a_c, lies, gap]: [f64; 4], travel: f64, (kept, blade): (f64, bool)) -> [f64; 3] {
     let goes = |times: f64| 1.0 - maulstick_num::powf(kept, times * travel);
     let free = (a_b - gap).max(0.0);
-    let bridged = match blade {
-        true => free,
-        false => ((a_b - lies) / 2.0).clamp(0.0, free),
+    let bridged = if blade {
+        free
+    } else {
+        ((a_b - lies) / 2.0).clamp(0.0, free)
     };
     let fill = goes(16.0) * gap.min(bridged);
     let (carried, most) = if blade {
@@ -211,13 +213,14 @@ fn wanted([a_b, a_c, lies, gap]: [f64; 4], travel: f64, (kept, blade): (f64, boo
     let donor = if difference > 0.0 { a_b - fill } else { a_c };
     let net = (goes(1.0) * difference.abs()).min(most * travel).min(donor);
     let swap = 0.03 * goes(1.0) * a_b.min(a_c).min(f64::from(SWAP_FILM));
-    match difference > 0.0 {
-        true => [fill + net, 0.0, swap],
-        false => [(fill - net).max(0.0), (net - fill).max(0.0), swap],
+    if difference > 0.0 {
+        [fill + net, 0.0, swap]
+    } else {
+        [(fill - net).max(0.0), (net - fill).max(0.0), swap]
     }
 }
 
-/// What lies on cells and films after the exchange, with how far it may be off.
+/// Paint on cells and films after the exchange, with its tolerance.
 fn exchanged(
     probe: &Probe,
     scene: &Scene,
@@ -306,16 +309,15 @@ fn paint_goes_both_ways() {
         let agrees = |scene: &Scene| {
             let mut near = 0;
             for ((is_cell, slot, at), [want, bound]) in &expected {
-                let got = match is_cell {
-                    true => {
-                        let mut planes = scene.window.planes();
-                        let plane = planes.find(|(of, _)| of == slot);
-                        plane.map_or(0.0, |(_, plane)| f64::from(plane[*at]))
-                    }
-                    false => scene
+                let got = if *is_cell {
+                    let mut planes = scene.window.planes();
+                    let plane = planes.find(|(of, _)| of == slot);
+                    plane.map_or(0.0, |(_, plane)| f64::from(plane[*at]))
+                } else {
+                    scene
                         .load
                         .film_of(*slot)
-                        .map_or(0.0, |film| f64::from(film[*at])),
+                        .map_or(0.0, |film| f64::from(film[*at]))
                 };
                 near += usize::from((got - want).abs() <= *bound);
             }

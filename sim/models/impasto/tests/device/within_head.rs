@@ -1,4 +1,4 @@
-//! Paint within the head, on what the stages before left: beside the processor's.
+//! Paint within the head, after the earlier stages, compared with the processor's.
 
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_impasto::device::probe::Prober;
@@ -11,8 +11,8 @@ use maulstick_model::footprint::contact::Contact;
 use crate::device;
 use crate::probed::{run, scene, stepped};
 
-/// Between bristles and along them films even out as the processor has it, in whichever order it is the turn
-/// of, on what the flow left: two passes, in each of which rounding may be off by a quantum.
+/// Seeping between and along bristles agrees with the processor's, in either order, after the flow: two passes, each
+/// with an error of up to a quantum.
 #[test]
 fn paint_seeps_between_strips() {
     let mut prober = Prober::new(device()).expect("taken");
@@ -45,14 +45,14 @@ fn paint_seeps_between_strips() {
     }
 }
 
-/// The flow is the processor's, on what the exchange left: within 2 quanta of film and 6 inside, as that
-/// is of its oracle, in the strips whose turn it is. It is the same in strips that touch nothing.
+/// The flow agrees with the processor's after the exchange: within 2 quanta of film and 6 inside, like its oracle, in
+/// the strips of the step, including those without contact.
 #[test]
 fn paint_flows_within_all_strips() {
     let mut prober = Prober::new(device()).expect("taken");
     for seed in 0..6 {
-        // One more step: paint flows in every second strip of the one, and in the others of the other. Nothing
-        // is pushed, for that goes along another axis first.
+        // One more step: paint flows in every second strip of one scene, and in the others of the other. Pushing is
+        // left out, as it would begin with another axis.
         let mut still = scene(seed, 2);
         still.handling.push = false;
         still.thinner = [None, Some(2)][seed as usize % 2];

@@ -1,4 +1,4 @@
-//! Stage 3: fluxes with van Leer's limiter, the stain left behind.
+//! Stage 3: fluxes with van Leer's limiter, and the remaining stain.
 
 use maulstick_canvas::quantum::CELL_MAX;
 use maulstick_canvas::relief::Relief;
@@ -9,7 +9,7 @@ use maulstick_impasto::stages::velocity::Faces;
 
 use crate::scene::{CELL_M, Random, Scene, lying, planes, spill, window};
 
-/// What leaves a cell through two faces and what comes through two is truncated to quanta.
+/// Tolerance of truncation: two outflows and two inflows of a cell, quanta.
 const TRUNCATED: f64 = 2.0;
 /// Six factors rounded to 2⁻²⁴.
 const ROUNDED: f64 = 6.0 / 16_777_216.0;
@@ -21,7 +21,7 @@ fn whole(window: &Window) -> Area {
     }
 }
 
-/// One plane after a motion along one axis, and how many quanta it may be off.
+/// One plane after a motion along one axis, and its tolerance in quanta.
 struct Expected {
     slot: usize,
     quanta: Vec<f64>,
@@ -107,8 +107,8 @@ fn agrees(got: &[(usize, Vec<f32>)], expected: &[Expected]) -> bool {
         })
 }
 
-/// Velocities through a share of the faces such that no cell loses more than it has along an axis,
-/// also just one and none.
+/// Velocities through a share of the faces, such that no cell loses more than its content along an axis, including
+/// exactly all of it and none.
 fn faces(area: &Area, random: &mut Random, share: f64) -> Faces {
     let [width, height] = area.size;
     let mut along = |next: usize| {
@@ -226,8 +226,8 @@ fn at_the_edge_of_the_surface_paint_stays() {
     assert_eq!(window.total(corner - 1), 1e5 - STAIN);
 }
 
-/// LeVeque's single vortex, T = 2, 128², CFL .5: the L1 error of the scheme's limiter. The bare fluxes
-/// that paint needs are a little worse than those with the dilatation term, in which the published
+/// LeVeque's single vortex, T = 2, 128², CFL .5: the L1 error of the scheme's limiter. The bare fluxes that paint needs
+/// are a little worse than those with the dilatation term, for which the published
 /// 1.54e-2 was measured.
 #[test]
 fn a_vortex_winds_a_disc_up_and_back() {
@@ -239,7 +239,7 @@ fn a_vortex_winds_a_disc_up_and_back() {
     assert!(donor_cell > 4e-2, "the test cannot tell: {donor_cell:.4e}");
 }
 
-/// The L1 error after a period; with the slopes of the scheme, or as a donor cell would do it.
+/// The L1 error after a period, with the scheme's slopes or a donor cell.
 fn vortex(slopes: bool) -> f64 {
     const SIDE: usize = 128;
     const PERIOD: f64 = 2.0;
@@ -334,7 +334,7 @@ fn the_limiter_is_the_harmonic_mean() {
     assert_eq!(van_leer(0.0, 0.0), 0.0);
 }
 
-/// Full cells among others: what was there is there, and no cell holds more than it can.
+/// Full cells among others: volume is conserved, and no cell exceeds its capacity.
 #[test]
 fn no_cell_takes_more_than_it_can_hold() {
     let full = CELL_MAX as f32;
@@ -365,7 +365,7 @@ fn no_cell_takes_more_than_it_can_hold() {
     }
 }
 
-/// What the test above would miss if counts beyond the most were not looked at.
+/// A fault that the test above would miss without its check of counts above the capacity.
 #[test]
 fn a_quantum_on_a_full_cell_is_lost() {
     assert_eq!(CELL_MAX as f32 + 1.0, CELL_MAX as f32);

@@ -15,8 +15,8 @@ use maulstick_model::transfer::SWAP_FILM;
 
 use crate::scene::{CELL_M, Scene, lying};
 
-/// By what a head gives and takes: the share that stays along a reference cell, whether it is a blade, and the
-/// share of films that changes places.
+/// Exchange rule of a head: the share kept along a reference cell, whether it is a blade, and the swapped share of
+/// films.
 #[derive(Clone, Copy)]
 struct Rule {
     kept: f64,
@@ -51,11 +51,10 @@ const RULES: [(&str, Rule); 3] = [
     ),
 ];
 
-/// Baxter 2004, Algorithm 3, by path length (item 19 of the reading guide): units to the canvas. What counts as
-/// nearly equal goes by what the donor has, not by the text's 833 µm, so films of oil even out by their
-/// difference, at most 100 µm of them along a reference cell. What a film has beyond the gap under it fills
-/// the gap, sixteen times as fast, at most until both sides have as much. A blade takes up all that it reaches,
-/// and evens nothing out.
+/// Baxter 2004, Algorithm 3, by path length (item 19 of the reading guide): units to the canvas. Near equality is
+/// measured by the donor's content, not by the text's 833 µm, so films of oil even out by their difference, at most 100
+/// µm along a reference cell. The part of a film beyond the gap under it fills the gap sixteen times as fast, until
+/// both sides are equal. A blade takes up all that it reaches, and evens nothing out.
 fn algorithm_3([a_b, a_c, lies, gap]: [f64; 4], travel: f64, rule: Rule) -> f64 {
     let stays = |times: f64| maulstick_num::powf(rule.kept, times * travel);
     let free = (a_b - gap).max(0.0);
@@ -76,7 +75,7 @@ fn algorithm_3([a_b, a_c, lies, gap]: [f64; 4], travel: f64, rule: Rule) -> f64 
     fill + if difference > 0.0 { amount } else { -amount }
 }
 
-/// What should lie on cells and films, and by how many quanta each may be off.
+/// Expected paint on cells and films, with tolerances in quanta.
 #[derive(Default)]
 struct Expected {
     cells: BTreeMap<(usize, usize), [f64; 2]>,
@@ -98,7 +97,7 @@ fn on(window: &Window, slot: usize, cell: usize) -> f64 {
     plane.map_or(0.0, |(_, plane)| f64::from(plane[cell]))
 }
 
-/// Quanta that a cell wants of its texel, and offers to it.
+/// Quanta that a cell demands from its texel, and offers to it.
 fn wants(
     c: &Contact,
     window: &Window,
@@ -123,7 +122,7 @@ fn wants(
         (net, both) = (f64::from(flow) * travel, 0.0);
     }
     let quanta = |units: f64| units * f64::from(c.cover) * QUANTA_PER_UNIT;
-    // A limited brush leaves as much again in a hollow that is as deep.
+    // A limited brush deposits the same again in a hollow of that depth.
     let most = f64::from(handling.most);
     let most = most + most.min(gap * QUANTA_PER_UNIT);
     let room = (QUANTA_PER_UNIT.min(most) - lying).max(0.0);
@@ -141,7 +140,7 @@ fn oracle(contacts: &[Contact], scene: &Scene, rule: Rule) -> Expected {
         .iter()
         .map(|c| wants(c, window, load, traits, &scene.handling, rule))
         .collect();
-    // Demand and offer of each texel, and from how many cells they come.
+    // Demand and offer of each texel, and the number of their cells.
     let mut demand = BTreeMap::<u32, [f64; 3]>::new();
     for (c, [given, taken]) in contacts.iter().zip(&wants) {
         let sums = demand.entry(c.texel).or_default();
@@ -174,16 +173,15 @@ fn oracle(contacts: &[Contact], scene: &Scene, rule: Rule) -> Expected {
             let of_cell = on(window, slot, cell);
             let to_canvas = given * granted * of_film / there.max(1.0);
             let to_brush = taken * taken_in * of_cell / lying.max(1.0);
-            // The demand is truncated and so is what moves; a sum of truncated demands is short of
-            // up to a quantum from each cell that shares the texel, and what a film has room for
-            // changes with both. Single precision adds 10⁻⁶.
-            let shared = |granted: f64, sum: f64, own: f64| match granted < 1.0 {
-                true => 2.0 * sharers / sum * own,
-                false => 0.0,
+            // Both the demand and the transfer are truncated; a sum of truncated demands lacks up to a quantum for each
+            // cell of the texel, and a film's free capacity changes with both. Single precision adds 10⁻⁶.
+            let shared = |granted: f64, sum: f64, own: f64| {
+                let bound = (granted < 1.0).then(|| 2.0 * sharers / sum * own);
+                bound.unwrap_or_default()
             };
-            let off = |moved: f64, shared: f64| match moved > 0.0 {
-                true => 2.0 + shared + 4e-6 * moved,
-                false => 0.0,
+            let off = |moved: f64, shared: f64| {
+                let bound = (moved > 0.0).then_some(2.0 + shared + 4e-6 * moved);
+                bound.unwrap_or_default()
             };
             let bound = off(to_canvas, shared(granted, drawn, *given))
                 + off(to_brush, shared(taken_in, offered, *taken));
@@ -216,7 +214,7 @@ fn agrees(scene: &Scene, expected: &Expected) -> bool {
         && films.all(|((slot, texel), want)| near(film(*slot, *texel), want))
 }
 
-/// All cells draw on two texels, and for a long way.
+/// All cells draw on two texels, over a long path.
 fn crowd(contacts: &mut [Contact]) {
     for contact in contacts {
         contact.texel %= 2;
@@ -298,7 +296,7 @@ fn paint_goes_both_ways_as_algorithm_3_says() {
     );
 }
 
-/// A cell that is nearly full takes no more than it has room for.
+/// A nearly full cell takes only what fits.
 #[test]
 fn a_full_cell_takes_nothing() {
     for missing in [0.0, 1.0, 500.0] {

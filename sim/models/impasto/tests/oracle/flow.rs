@@ -1,4 +1,4 @@
-//! Paint within the head: out to a film that lacks some, in from one that has too much, and along.
+//! Paint within the head: out to a film that lacks some, in from one with an excess, and along.
 
 use maulstick_brush::Head;
 use maulstick_canvas::quantum::SLOTS;
@@ -8,7 +8,7 @@ use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 
 use crate::scene::{Scene, brush};
 
-/// What moves is truncated: twice at a film, and inside at both ends of two ways besides.
+/// Truncation: twice at a film, and inside also at both ends of two flows.
 const FILM_BOUND: f64 = 2.0;
 const INSIDE_BOUND: f64 = 6.0;
 
@@ -83,7 +83,7 @@ fn flow_once(scene: &mut Scene) {
     }
 }
 
-/// On the reference cell, and on coarse cells, where a step is a long way and all may leave at once.
+/// On the reference cell, and on coarse cells, where a step is long and all paint may leave at once.
 #[test]
 fn paint_flows_within_all_strips_and_none_is_lost() {
     for (seed, cell_m) in (0..24).zip([2.5e-4, 1e-3, 2e-3, 1e-2].into_iter().cycle()) {
@@ -117,7 +117,7 @@ fn paint_flows_within_all_strips_and_none_is_lost() {
     }
 }
 
-/// Texels with nothing inside beside full ones: the steepest falls.
+/// Empties texels beside full ones: the steepest differences.
 fn empty_some(load: &mut BrushLoad, head: &Head) {
     for slot in 0..SLOTS {
         let Some((_, inside)) = load.planes_mut(slot) else {

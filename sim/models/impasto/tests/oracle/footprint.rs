@@ -1,5 +1,5 @@
-//! Stage 1: every cell asks every segment of every strip whether it covers the cell, and how the bristle,
-//! round below, lies there on the relief.
+//! Stage 1: every cell tests every segment of every strip for cover, and for the height of the bristle, round below, on
+//! the relief.
 
 use maulstick_brush::head::STATIONS;
 use maulstick_model::brush::head::low_bounds;
@@ -10,13 +10,13 @@ use maulstick_model::footprint::contact::Contact;
 
 use crate::scene::{CELL_M, CELLS, Scene};
 
-/// The constants of the stage.
+/// Greatest height added to a ribbon that covers a cell only in part.
 const EDGE_PENALTY: f64 = 0.9;
 const RANKS: f64 = 0.02;
 const BENT: f64 = 0.2;
-/// An end is soft over so many cells at least.
+/// Least width of a soft end, cells.
 const SHARP: f64 = 0.25;
-/// How far a strip goes on past its tip, cells.
+/// Extension of a strip beyond its tip, cells.
 const TIP: f64 = 0.5;
 /// Sixteen roundings of a place below 128 cells in f32.
 const ROUNDING: f64 = 16.0 * 128.0 / 33_554_432.0;
@@ -27,27 +27,27 @@ struct Candidate {
     score: f64,
     /// Height of its middle line, cells.
     z: f64,
-    /// How far it keeps off what it lies on, cells.
+    /// Distance from the surface below it, cells.
     keeps: f64,
-    /// Place across it, 0 in the middle to 1 at an edge, and by how much that may be off.
+    /// Place across it, 0 in the middle to 1 at an edge, and its tolerance.
     across: f64,
     across_off: f64,
     cover: f64,
     strip: usize,
     along: f64,
     moved: [f64; 2],
-    /// By how much its values may be off.
+    /// Tolerance of its values.
     off: f64,
-    /// Whether it covers the cell beyond doubt.
+    /// True if it certainly covers the cell.
     sure: bool,
 }
 
-/// What a cell may be: contacts, or none.
+/// Possible contacts of a cell, or none.
 #[derive(Clone, Debug, Default)]
 struct Cell {
-    /// What may touch it, and by how much its places and its height may be off.
+    /// Possible contacts, with the tolerances of place and height.
     contacts: Vec<(Contact, [f64; 2])>,
-    /// By how much the cover may be off.
+    /// Tolerance of the cover.
     cover_off: f64,
     none: bool,
 }
@@ -64,7 +64,7 @@ fn segment(scene: &Scene, strip: usize, station: usize) -> Segment {
     let point = |station: usize| {
         let i = station * scene.head.strips() + strip;
         let (from, to) = (&scene.from, &scene.to);
-        // Motion is a difference of places in f32, as the stage's input is.
+        // Motion is a difference of places in f32, as in the stage's input.
         let moved = [to.x[i] - from.x[i], to.y[i] - from.y[i]];
         let ways = [moved[0], moved[1], to.z[i] - from.z[i]].map(f64::from);
         let at = [to.x[i], to.y[i], to.z[i]].map(f64::from);
@@ -81,7 +81,7 @@ fn segment(scene: &Scene, strip: usize, station: usize) -> Segment {
     }
 }
 
-/// Whether and how a segment of half a width covers the cell with this middle; nothing above `height` counts.
+/// Cover of the cell with this middle by a segment of a half width, if any; parts above `height` are ignored.
 fn cover(s: &Segment, middle: [f64; 2], half: f64, height: f64) -> Option<Candidate> {
     let [z, z_end] = s.ends.map(|end| end[2]);
     if z.min(z_end) >= height {
@@ -107,17 +107,17 @@ fn cover(s: &Segment, middle: [f64; 2], half: f64, height: f64) -> Option<Candid
         (0.0, 0.0)
     };
     let cosine = 1.0 / (1.0 + slope * slope).sqrt();
-    // Its way in the step: across it, and along it as its major axis sees it.
+    // Its motion in the step: across it, and along its major axis.
     let way = [0, 1].map(|i| 0.5 * (went(shares[0], i) + went(shares[1], i)));
     let soft = ((way[minor] - slope * way[major]) * cosine).abs().max(1.0);
     let blurred = (way[major] + slope * way[minor]).abs() * cosine * cosine;
     let blurred = blurred.max(SHARP);
-    // A short rest has a rough direction.
+    // A short remainder has an inexact direction.
     let off =
         ROUNDING * (1.0 + steep.abs() + (1.0 + TIP) / length.max(1e-9) + 1.0 / blurred).min(1e4);
     let along = (middle[major] - a[major]) * d[major].signum();
     let end = length + if stops { TIP } else { 0.0 };
-    // Where another segment goes on it owns the cells.
+    // A continuing segment owns the cells.
     if (!begins && along < -off) || (!stops && along > end + off) {
         return None;
     }
@@ -125,7 +125,7 @@ fn cover(s: &Segment, middle: [f64; 2], half: f64, height: f64) -> Option<Candid
         (false, false) => 1.0,
         (true, false) => 0.5 + along / blurred,
         (false, true) => 0.5 + (end - along) / blurred,
-        // A piece shorter than its way is over no cell for all of it.
+        // A piece shorter than its motion is over no cell for the whole of it.
         (true, true) => {
             let least = (along.min(end - along) / blurred + 0.5).min(end / blurred);
             least.min(1.0)
@@ -133,7 +133,7 @@ fn cover(s: &Segment, middle: [f64; 2], half: f64, height: f64) -> Option<Candid
     };
     let line = a[minor] + (middle[major] - a[major]) * slope;
     let aside = (middle[minor] - line).abs() * cosine;
-    // A ribbon narrower than its soft edges covers a half, and what its width is of them.
+    // A ribbon narrower than its soft edges covers one half plus its width relative to them.
     let most = (half / soft + 0.5).min(1.0);
     let across = ((half + 0.5 * soft - aside) / soft).min(most);
     if across.min(there) < -2.0 * off {
@@ -168,16 +168,16 @@ fn cover(s: &Segment, middle: [f64; 2], half: f64, height: f64) -> Option<Candid
     })
 }
 
-/// How far the pressed head sinks into what it lies on, cells.
+/// Sinking of the pressed head into the surface below it, cells.
 fn sink(scene: &Scene) -> f64 {
     f64::from(scene.traits.sink) * f64::from(scene.to.press)
 }
 
-/// All that covers a cell of the surface.
+/// All segments that cover a cell of the surface.
 fn candidates(scene: &Scene, at: [usize; 2], most: f64) -> Vec<Candidate> {
     let traits = &scene.traits;
     let loose = f64::from(traits.loose(scene.to.press));
-    // What is pressed down lies as deep as it sinks in below the deepest ride.
+    // A pressed part may lie below the deepest ride by its sinking.
     let low = most + sink(scene) + f64::from(scene.window.ride_below());
     let wide = f64::from(traits.half_width);
     let bend = scene.to.bend.map(f64::from);
@@ -186,7 +186,7 @@ fn candidates(scene: &Scene, at: [usize; 2], most: f64) -> Vec<Candidate> {
     for strip in 0..scene.head.strips() {
         let lift = scene.head.lift();
         let unruly = f64::from(lift[strip]);
-        // Each load turns them to others.
+        // Each load turns the strips differently.
         let seed = scene.load.seed() as usize;
         let keeps = loose * f64::from(lift[(strip + seed) % lift.len()]);
         let film =
@@ -213,7 +213,7 @@ fn candidates(scene: &Scene, at: [usize; 2], most: f64) -> Vec<Candidate> {
     found
 }
 
-/// What the deepest candidates make of a cell, where bristles lie on `ride`.
+/// The contact of a cell from its deepest candidates, with bristles on `ride`.
 fn cell(scene: &Scene, ride: &[f32], at: [usize; 2], candidates: &[Candidate]) -> Cell {
     let mut cell = Cell::default();
     let sure = candidates.iter().filter(|c| c.sure);
@@ -237,10 +237,10 @@ fn cell(scene: &Scene, ride: &[f32], at: [usize; 2], candidates: &[Candidate]) -
             let texel = c.strip * TEXELS_PER_STRIP + along;
             let film =
                 f64::from(scene.load.film(texel)) * f64::from(scene.traits.film_cells_per_quantum);
-            // Solved on a plane at 0: it follows the ride down, and stands on it where that is higher.
+            // Solved on a plane at 0: it follows the ride down, and rests on it where that is higher.
             let ride = f64::from(ride[place]);
             let rests = (c.z + ride.min(0.0)).max(ride);
-            // A strip's edges are higher by its thickness, as those of a parabola.
+            // A strip's edges are higher by its thickness, like those of a parabola.
             let round = 2.0 * f64::from(scene.traits.half_thickness);
             let bottom = rests - sink(scene) + c.keeps + round * c.across * c.across;
             let off = c.off + round * c.across_off * (2.0 * c.across + c.across_off);
@@ -266,7 +266,7 @@ fn cell(scene: &Scene, ride: &[f32], at: [usize; 2], candidates: &[Candidate]) -
     cell
 }
 
-/// Tolerances of cover, motion, depth, fraction and gap, where places and heights are off by so much.
+/// Tolerances of cover, motion, depth, fraction and gap, from those of place and height.
 fn tolerances(([place, height], cover_off): ([f64; 2], f64), want: &Contact) -> [f64; 6] {
     let wet = f64::from(want.depth) / f64::from(want.fraction).max(1e-9);
     let fraction = if want.fraction > 0.0 {
@@ -290,7 +290,7 @@ fn is(got: &Contact, (want, off): &(Contact, [f64; 2]), cover_off: f64) -> bool 
             .all(|((a, b), tolerance)| (a - b).abs() <= tolerance)
 }
 
-/// What every cell of the surface may be, row after row, where bristles lie on `ride`.
+/// Possible contacts of every cell of the surface, row by row, with bristles on `ride`.
 fn oracle(scene: &Scene, ride: &[f32]) -> Vec<Cell> {
     let [right, top] = CELLS.map(|cells| cells as usize);
     let (low, high) = scene.bounds;
@@ -321,7 +321,7 @@ fn oracle(scene: &Scene, ride: &[f32]) -> Vec<Cell> {
         .collect()
 }
 
-/// The first cell that is not as it should be.
+/// The first cell that differs from its oracle.
 fn compare(scene: &Scene, contacts: &[Contact], oracle: &[Cell]) -> Result<(), String> {
     let mut got = vec![None; oracle.len()];
     let across = CELLS[0] as usize;
@@ -440,8 +440,8 @@ fn faults_in_a_footprint_are_found() {
     );
 }
 
-/// What a footprint would be on other bristles or another ride is told apart: flat strips, strips that
-/// follow the tooth into each gap, strips on a plane, those of another load.
+/// Seeded faults that the comparison must detect: flat strips, strips that follow the tooth into each gap, strips on a
+/// plane, those of another load.
 #[test]
 fn other_bristles_and_rides_are_told_apart() {
     let mut scene = Scene::new(2);
@@ -466,8 +466,8 @@ fn other_bristles_and_rides_are_told_apart() {
     );
 }
 
-/// The bounds that a painting cuts its search to hold all cells that the head touches, and those
-/// beside them that paint may be pushed to.
+/// The bounds of a painting's search contain all cells that the head touches, and those beside them to which paint may
+/// be pushed.
 #[test]
 fn the_bounds_hold_all_that_is_touched() {
     let mut touched = 0;

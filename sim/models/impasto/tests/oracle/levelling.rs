@@ -9,16 +9,16 @@ use crate::scene::{CELL_M, Random, Scene};
 /// Surface tension of linseed oil, N/m, and weight of paint of 1,800 kg/m³, N/m³.
 const TENSION: f64 = 0.03;
 const WEIGHT: f64 = 1800.0 * 9.81;
-/// An explicit scheme of fourth order is stable up to 1/32; it is kept below.
+/// Greatest explicit share of a scheme of fourth order, which is stable up to 1/32.
 const STABLE: f64 = 1.0 / 40.0;
 /// The slope at which an edge advances onto bare ground.
 const ADVANCES: f64 = 1.0;
-/// The most of a donor that goes through one of its four faces.
+/// Greatest share of a donor that goes through one of its four faces.
 const MOST: f64 = 0.25;
 /// 2⁻²⁴, the rounding of a height.
 const EPS: f64 = 1.0 / 16_777_216.0;
 
-/// What an area's paint does for so many seconds.
+/// The paint of an area during levelling.
 struct Film<'a> {
     window: &'a Window,
     body: Body,
@@ -66,19 +66,18 @@ impl Film<'_> {
         }
     }
 
-    /// The least and the most of the donor's paint that goes from `at` to `next`, as the gradient's
-    /// rounding leaves it.
+    /// The least and the greatest share of the donor's paint from `at` to `next`, given the gradient's rounding.
     fn share(&self, at: [i64; 2], next: [i64; 2]) -> [f64; 2] {
         let (s, s_next) = (self.surface(at), self.surface(next));
         let curved = (self.curvature(next) - self.curvature(at)) / CELL_M;
         let gradient = WEIGHT * (s - s_next) / CELL_M + TENSION * curved;
-        // The highest that something stands is eight cells.
+        // Greatest height on the surface: eight cells.
         let rounding = 8.0 * CELL_M * EPS;
         let off = 24.0 * rounding * (TENSION / CELL_M.powi(3) + WEIGHT / CELL_M);
         let off = off + 8.0 * EPS * gradient.abs();
         let mean = |of: &dyn Fn([i64; 2]) -> f64| 0.5 * (of(at) + of(next));
         let height = mean(&|at| self.to_cells * self.quanta(at) * CELL_M);
-        // Half of it takes the yield stress away; alone it is e⁷ times as fluid.
+        // A share of one half removes the yield stress; thinner alone is e⁷ times as fluid.
         let left = |at| (1.0 - 2.0 * self.thin(at)).max(0.0).powi(3);
         let yields = self.body.yield_pa.max(1e-9) * mean(&left);
         let advances = ADVANCES * mean(&left);
@@ -101,7 +100,7 @@ impl Film<'_> {
             (volume / (self.to_cells * held)).clamp(-MOST, MOST)
         };
         let mut shares = [goes(gradient - off), goes(gradient), goes(gradient + off)];
-        // A slope that is steep within rounding may count as either.
+        // A slope near the bound within rounding may count as either.
         if ((s - s_next).abs() / CELL_M - advances).abs() < 1e-5 {
             shares[1] = 0.0;
         }
@@ -110,7 +109,7 @@ impl Film<'_> {
         [shares[0] - off(shares[0]), shares[2] + off(shares[2])]
     }
 
-    /// Through the right and upper faces of an area's cells; nothing through its border.
+    /// Flow through the right and upper faces of an area's cells; none through its border.
     fn oracle(&self, area: &Area) -> [Vec<[f64; 2]>; 2] {
         let [columns, rows] = area.size;
         [0, 1].map(|axis| {
@@ -139,7 +138,7 @@ fn agrees(faces: &Faces, want: &[Vec<[f64; 2]>; 2]) -> bool {
     near(&faces.right, &want[0]) && near(&faces.above, &want[1])
 }
 
-/// What levels on an area by itself.
+/// Result of levelling on an area alone.
 fn levelled(film: &Film<'_>, area: &Area) -> (Faces, f32) {
     let to_cells = film.to_cells as f32;
     let round = Round::new(film.body, CELL_M, film.seconds, to_cells, film.bare as f32);
@@ -203,7 +202,7 @@ fn paint_levels_as_a_bingham_fluid() {
         if most < 1e-3 {
             continue;
         }
-        // Paint a hundredth more fluid, or that yields a fiftieth later, is told apart where it flows.
+        // Paint a hundredth more fluid, or with a yield stress a fiftieth higher, differs where it flows.
         let place = all().position(|v| v.abs() == most).expect("the most");
         let planes = [&mut faces.right, &mut faces.above];
         let count = planes[0].len();
@@ -214,7 +213,7 @@ fn paint_levels_as_a_bingham_fluid() {
     assert!(seen.iter().all(|seen| *seen > 100), "{seen:?}");
 }
 
-/// Seeded faults in what the flow depends on.
+/// Seeded faults in the parameters of the flow.
 #[test]
 fn other_paint_is_told_apart() {
     let scene = Scene::new(1);

@@ -1,6 +1,5 @@
-//! Each stage of the impasto step against a plain oracle in f64 that follows its documentation, and
-//! the whole step against what must hold of it. Beside each comparison stands a seeded fault that it
-//! must find.
+//! Each stage of the impasto step against a plain oracle in f64 that follows its documentation, and the whole step
+//! against its invariants. Each comparison has a seeded fault that it must find.
 
 mod advection;
 mod exchange;

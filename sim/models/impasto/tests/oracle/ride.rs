@@ -1,4 +1,4 @@
-//! The ride of a bristle: no cell within reach stands higher than the parabola that it lies on.
+//! The ride of a bristle: no cell within reach is higher than the parabola that rests on it.
 
 use maulstick_canvas::relief::Relief;
 use maulstick_canvas::relief::ride::{RADIUS_M, REACH_M, ride};
@@ -8,7 +8,7 @@ use maulstick_canvas::window::Window;
 
 use crate::scene::{Random, window};
 
-/// Four roundings of a height of a few cells.
+/// Tolerance: four roundings of a height of a few cells.
 const TOLERANCE: f64 = 4.0 * 8.0 / 16_777_216.0;
 
 /// Heights in cells, rows of `width`, of cells of `cell_m`.
@@ -42,7 +42,7 @@ fn ground(seed: u64, kind: &str, cell_m: f64, most_m: f64) -> Ground {
     }
 }
 
-/// The highest parabola at a cell, cells: of each cell within reach, and the reach is a disc or a square.
+/// The highest parabola at a cell, cells, over the cells within reach, a disc or a square.
 fn oracle(ground: &Ground, radius_m: f64, [x, y]: [usize; 2], round: bool) -> f64 {
     let reach = (REACH_M / ground.cell_m).ceil() as i64;
     let rows = (ground.base.len() / ground.width) as i64;
@@ -78,7 +78,7 @@ fn ridden(ground: &Ground) -> Vec<f32> {
 fn a_bristle_lies_on_the_highest_parabola() {
     for (seed, kind) in (0..).zip(["linen", "cotton", "panel", "paper"]) {
         let cell_m = [2.5e-4, 5e-4][seed as usize % 2];
-        // What is lower than its parabola at the reach carries no bristle beyond: the reach may be a disc.
+        // A cell below its parabola at the reach carries no bristle beyond, so the reach may be a disc.
         let low = ground(
             seed,
             kind,
@@ -100,7 +100,7 @@ fn a_bristle_lies_on_the_highest_parabola() {
     }
 }
 
-/// On flat ground it lies on the ground, also far above or below; on less than a row as well.
+/// On flat ground the ride is the ground, also far above or below, and on less than a row.
 #[test]
 fn on_flat_ground_it_lies_on_the_ground() {
     for (height, width, cells) in [
@@ -114,8 +114,7 @@ fn on_flat_ground_it_lies_on_the_ground() {
     }
 }
 
-/// The ride is never below the ground nor below the deepest valley of the tooth, and it is what it is
-/// whatever else the window holds.
+/// The ride is never below the ground or the deepest valley of the tooth, and is independent of the window.
 #[test]
 fn the_ride_is_the_same_in_every_window() {
     for kind in Tooth::names() {
@@ -132,7 +131,7 @@ fn the_ride_is_the_same_in_every_window() {
         let reach = maulstick_canvas::relief::ride::reach(2.5e-4) as i64;
         for y in 70 - reach..100 + reach {
             for x in 100 - reach..180 + reach {
-                // As far as the planes go on by the reach.
+                // The planes extend beyond by the reach.
                 if !(64 + reach..192 - reach).contains(&x)
                     || !(64 + reach..128 - reach).contains(&y)
                 {

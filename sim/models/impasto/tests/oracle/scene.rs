@@ -1,5 +1,5 @@
-//! Seeded scenes: a surface of 2×2 tiles with tooth and wet paint, a head whose strips lie anyhow,
-//! and films of several paints.
+//! Seeded scenes: a surface of 2×2 tiles with tooth and wet paint, a head with random strips, and films of several
+//! paints.
 
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{BrushFile, Head, HeadPose};
@@ -16,9 +16,9 @@ use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;
 
 pub(crate) const CELL_M: f64 = 2.5e-4;
-/// Cells of the surface, so that the last tiles reach over its edge.
+/// Size of the surface, cells; the last tiles extend over its edge.
 pub(crate) const CELLS: [u32; 2] = [100, 90];
-/// Paints in use.
+/// Number of paints in use.
 pub(crate) const PAINTS: usize = 4;
 
 pub(crate) struct Random(Pcg32);
@@ -41,7 +41,7 @@ impl Random {
     }
 }
 
-/// A window on all of a surface.
+/// A window on a whole surface.
 pub(crate) fn window(relief: &Relief) -> Window {
     let mut store = TileStore::new(CELLS);
     let all = store
@@ -50,7 +50,7 @@ pub(crate) fn window(relief: &Relief) -> Window {
     Window::open(&mut store, all, relief).expect("free")
 }
 
-/// The library's round brush with so many strips of that width.
+/// The library's round brush with this number and width of strips.
 pub(crate) fn brush(strips: usize, width_mm: f64) -> BrushFile {
     let mut file = BrushFile::library("round").expect("round");
     (file.strips.count, file.strips.width_mm) = (strips, width_mm);
@@ -96,7 +96,7 @@ impl Scene {
         }
     }
 
-    /// The same, but its brush goes so many times as far, and a little up or down.
+    /// The scene with a motion of its brush `times` as long, and slightly up or down.
     pub(crate) fn far(seed: u64, times: f32) -> Self {
         let mut scene = Self::new(seed);
         let mut random = Random::new(seed + 50);
@@ -210,7 +210,7 @@ fn load(random: &mut Random, head: &Head, traits: &BrushTraits, seed: u64) -> Br
     load
 }
 
-/// Counts on a window; every cell must hold a whole number from 0 to the most that it can.
+/// Counts on a window; every cell must hold a whole number from 0 to its capacity.
 pub(crate) fn lying(window: &Window) -> Counts {
     let mut counts = [0; SLOTS];
     for (slot, plane) in window.planes() {

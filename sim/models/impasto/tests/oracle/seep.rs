@@ -1,4 +1,4 @@
-//! Paint between bristles: of two films beside each other the fuller one gives, of its own mixture.
+//! Paint between bristles: the fuller of two neighbouring films gives, of its own mixture.
 
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_impasto::stages::seep::seep;
@@ -7,11 +7,11 @@ use maulstick_model::brush::traits::{BrushTraits, Seep, TEXELS_PER_STRIP};
 
 use crate::scene::{Scene, brush};
 
-/// A film meets one across and one along: what moves is truncated there, and its second share is of a
-/// count that is off by as much.
+/// Tolerance: a film exchanges once across and once along, both truncated, and its second share is of a count with the
+/// first error.
 const BOUND: f64 = 4.0;
 
-/// Difference between the films of two strips that stays, by a full film.
+/// Difference between the films of two strips that remains, as a share of a full film.
 const HOLDS: f64 = 0.3;
 
 /// Films by slot and texel.
@@ -29,8 +29,8 @@ fn total(films: &Films, texel: usize) -> f64 {
     films.iter().map(|film| film[texel]).sum()
 }
 
-/// Half the share of their difference beyond what is held goes from the fuller film to the other: all of it would
-/// leave just what is held.
+/// Moves half the share of the unheld difference from the fuller film to the other; a share of 1 leaves the held
+/// difference.
 fn even_out(films: &mut Films, [a, b]: [usize; 2], share: f64, holds: f64) {
     let (one, other) = (total(films, a), total(films, b));
     let (from, to) = if one > other { (a, b) } else { (b, a) };
@@ -46,15 +46,15 @@ fn even_out(films: &mut Films, [a, b]: [usize; 2], share: f64, holds: f64) {
     }
 }
 
-/// Films after a turn: between strips of one order, two by two, and along strips; in turn from the first
-/// and from the second on.
+/// Films after a turn: between strips of one order, in pairs, and along strips; pairs start at the first and at the
+/// second in turn.
 fn oracle(scene: &Scene, seep: Seep, holds: f64) -> Films {
     let holds = holds * scene.traits.film_full;
     let turn = scene.load.steps() / BrushTraits::FLOW_STEPS;
     let mut films = films_of(&scene.load);
     let order = &scene.head.beside()[(turn % 2) as usize];
     let first = (turn / 2 % 2) as usize;
-    // Of pairs and strips every second one in each step.
+    // Every second pair and strip in each step.
     let due = |number: usize| (scene.load.steps() + number as u64).is_multiple_of(2);
     let pairs = order[first..].chunks_exact(2).enumerate();
     for (_, pair) in pairs.filter(|(number, _)| due(*number)) {
@@ -132,7 +132,7 @@ fn the_fuller_film_gives_and_none_is_lost() {
     }
 }
 
-/// Between equal films nothing ever goes: two colours beside each other stay two.
+/// Equal films exchange nothing: adjacent colours stay distinct.
 #[test]
 fn equal_films_of_two_colours_stay_two() {
     let mut scene = Scene::new(3);
@@ -158,8 +158,8 @@ fn equal_films_of_two_colours_stay_two() {
     assert!(films_of(&scene.load) != before, "the test cannot tell");
 }
 
-/// The whole head feeds the bristles that touch: a film that is used up again and again gets paint from
-/// strips that are not beside it.
+/// The whole head feeds the bristles that touch: a film that is repeatedly used up gets paint from strips that are not
+/// beside it.
 #[test]
 fn the_whole_head_feeds_a_bristle() {
     let mut scene = Scene::new(4);

@@ -1,4 +1,4 @@
-//! The skin in stage 1: every cell asks every triangle whether its middle lies in it.
+//! The skin in stage 1: every cell tests whether its middle lies in a triangle.
 
 use std::collections::BTreeMap;
 
@@ -13,14 +13,14 @@ use crate::scene::{CELL_M, CELLS, Random, Scene};
 /// Sixteen roundings of a place below 128 cells in f32.
 const ROUNDING: f64 = 16.0 * 128.0 / 33_554_432.0;
 
-/// What of a triangle lies over a cell.
+/// Part of a triangle over a cell.
 #[derive(Clone, Copy, Debug)]
 struct Lies {
     z: f64,
     moved: [f64; 2],
     along: f64,
     around: f64,
-    /// Whether it does beyond doubt.
+    /// True if it certainly covers the cell.
     sure: bool,
     off: f64,
 }
@@ -38,7 +38,7 @@ fn scene(seed: u64) -> Scene {
     }
     let traits = BrushTraits::of(&file, CELL_M, 1.0);
     scene.traits.recede = traits.recede;
-    // Hardly open, so that it does not draw back beyond the paint.
+    // Slightly open, so that the skin does not recede beyond the paint.
     scene.to.splay *= 0.3;
     let skin = scene.head.skin().expect("a skin");
     let places = skin.places().to_vec();
@@ -112,7 +112,7 @@ fn lying(scene: &Scene, at: [usize; 2]) -> Vec<Lies> {
     found
 }
 
-/// Whether a contact, or none, may be what a cell has.
+/// True if a contact, or none, is possible for a cell.
 fn fits(scene: &Scene, at: [usize; 2], got: Option<&Contact>) -> bool {
     let found = lying(scene, at);
     let sure = found.iter().filter(|lies| lies.sure);
@@ -126,7 +126,7 @@ fn fits(scene: &Scene, at: [usize; 2], got: Option<&Contact>) -> bool {
         f64::from(scene.load.film(texel)) * f64::from(scene.traits.film_cells_per_quantum)
     };
     let ride = f64::from(scene.window.ride()[place]);
-    // It draws back where the strips show, and sinks in as these do.
+    // The skin recedes where the strips show, and sinks in as they do.
     let keeps = f64::from(scene.traits.recede) * f64::from(scene.to.splay)
         - f64::from(scene.traits.sink) * f64::from(scene.to.press);
     let mut none = lowest == f64::MAX;

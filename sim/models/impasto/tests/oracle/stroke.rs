@@ -38,17 +38,16 @@ struct Bench {
     versions: u64,
 }
 
-/// How many tiles a window holds.
+/// Extent of a window.
 #[derive(Clone, Copy, PartialEq)]
 enum Windows {
-    /// All of the surface.
     Whole,
-    /// Those that a step needs, with what carries its bristles.
+    /// The tiles that a step needs, with those that carry its bristles.
     Narrow,
 }
 
 impl Bench {
-    /// On a surface without tooth, which is the same everywhere.
+    /// A brush on a uniform surface without tooth.
     fn new() -> Self {
         Self::on(Relief::flat(CELL_M))
     }
@@ -76,7 +75,7 @@ impl Bench {
         Window::open(&mut self.store, rect, &self.relief).expect("free")
     }
 
-    /// One step in a window of its own.
+    /// One step in its own window.
     fn step(&mut self, sweep: Sweep<'_>, windows: Windows) -> StepReport {
         let height = self.load.thickest() as f32 * self.traits.film_cells_per_quantum
             + self.traits.sink
@@ -143,7 +142,7 @@ fn sweep<'a>(from: &'a HeadPose, to: &'a HeadPose) -> Sweep<'a> {
     }
 }
 
-/// An arc from left to right that crosses tile borders both ways, turning and more and more pressed.
+/// An arc from left to right that crosses tile borders both ways, turning under rising pressure.
 fn arc(bench: &Bench) -> Vec<HeadPose> {
     let waypoint = |i: usize| {
         let t = i as f64 / 40.0;
@@ -182,8 +181,8 @@ fn arc(bench: &Bench) -> Vec<HeadPose> {
     way
 }
 
-/// Rounds places to odd multiples of 2⁻¹¹ cell: a shift by whole cells or a reflection of the
-/// surface does not round them again, and none lies on the border or in the middle of a cell.
+/// Rounds places to odd multiples of 2⁻¹¹ cell: a shift by whole cells or a reflection of the surface does not round
+/// them again, and none lies on the border or in the middle of a cell.
 fn exact(pose: &mut HeadPose) {
     for place in pose.x.iter_mut().chain(&mut pose.y) {
         *place = ((*place * 1024.0).floor() + 0.5) / 1024.0;
@@ -219,9 +218,9 @@ fn moved(films: &[f64], to: impl Fn(usize, usize) -> Option<(usize, usize)>) -> 
     out
 }
 
-/// By which share of its own two pictures' volume differs, and by which share of the mean film 95 of
-/// 100 painted cells differ at most: where two strips are equally deep, rounding decides between
-/// them, and a few cells about are another picture.
+/// Difference of two pictures' volume, as a share, and the 95th percentile of the difference of painted cells, as a
+/// share of the mean film. Where two strips are equally deep, rounding decides between them, and the picture differs
+/// over a few cells.
 fn difference(one: &[f64], two: &[f64]) -> [f64; 2] {
     let volume = one.iter().sum::<f64>();
     let pairs = one.iter().zip(two).filter(|(a, b)| **a + **b > 0.0);
@@ -252,8 +251,8 @@ fn painted_on(
     bench.films()
 }
 
-/// The stroke while the head is lightly pressed. Where paint comes to lie some cells thick, −c·∇p
-/// makes small differences large.
+/// The part of the stroke with a lightly pressed head. Where paint lies some cells thick, −c·∇p amplifies small
+/// differences.
 fn light(way: &[HeadPose]) -> Vec<HeadPose> {
     way[..60].to_vec()
 }
@@ -263,9 +262,9 @@ fn back_again(way: &[HeadPose]) -> Vec<HeadPose> {
     way.iter().chain(way.iter().rev()).cloned().collect()
 }
 
-/// Steps in windows of just the tiles that they need, written back each time, paint to the quantum
-/// what steps in one window on all of the surface do: also on tooth, on which bristles ride from peak to
-/// peak, where other windows have other valleys.
+/// Steps in windows of only the tiles that they need, written back each time, paint to the quantum like steps in one
+/// window on the whole surface: also on tooth, on which bristles ride from peak to peak, where other windows have other
+/// valleys.
 #[test]
 fn borders_of_windows_do_not_show() {
     for kind in [None, Some("linen"), Some("paper")] {
@@ -311,7 +310,7 @@ fn borders_of_tiles_do_not_show() {
 
 #[test]
 fn a_mirrored_stroke_is_the_mirrored_picture() {
-    // Short, for where a film just bridges its gap rounding decides whether it touches.
+    // Short, because rounding decides about contact where a film just bridges its gap.
     let short = |way: &[HeadPose]| way[..12].to_vec();
     let one = painted(short, Windows::Whole);
     let want = moved(&one, |x, y| Some((SIDE as usize - 1 - x, y)));
@@ -325,7 +324,7 @@ fn a_mirrored_stroke_is_the_mirrored_picture() {
     );
 }
 
-/// A head that touches nothing, because it hovers or because it lies beside the surface.
+/// A head that touches nothing, because it hovers or is beside the surface.
 #[test]
 fn a_step_without_contact_changes_nothing() {
     let mut bench = Bench::new();

@@ -16,7 +16,7 @@ use crate::scene::{CELL_M, Scene, window};
 /// Ten operations on numbers of at most a few cells, each rounded to 2⁻²⁴ of its result.
 const TOLERANCE: f64 = 4e-6;
 
-/// What a touched cell does to its paint.
+/// Effect of a touched cell on its paint.
 #[derive(Clone, Copy)]
 struct Touch {
     push: [f64; 2],
@@ -31,7 +31,7 @@ fn touch(c: &Contact, window: &Window, thinner: Option<usize>, follows: f64) -> 
     let share = if total > 0.0 { thin / total } else { 0.0 };
     let wet = f64::from(c.depth) / f64::from(c.fraction).max(1e-30);
     let flow = f64::from(SQUISH) * (1.0 + f64::from(EASE) * share);
-    // What lies below the bristles, in the gaps of the tooth, does not follow them.
+    // Paint below the bristles, in the gaps of the tooth, does not follow them.
     let grip = follows * (1.0 - f64::from(SLIP) * share) * f64::from(c.cover * c.fraction);
     Touch {
         push: c.moved.map(|cells| grip * f64::from(cells)),
@@ -112,8 +112,8 @@ fn agrees(faces: &Faces, oracle: &[Vec<f64>; 2]) -> bool {
     near(&faces.right, &oracle[0]) && near(&faces.above, &oracle[1])
 }
 
-/// Share of its motion that paint follows: half under bristles, for it sticks to canvas and bristle alike
-/// (Baxter 2004, § 6.4.2), and all before a blade.
+/// Share of its motion that paint follows: half under bristles, because it sticks to canvas and bristle alike (Baxter
+/// 2004, § 6.4.2), and all before a blade.
 fn followed(kind: &str) -> f64 {
     match kind {
         "knife" => 1.0,
@@ -135,7 +135,7 @@ fn paint_follows_the_brush_and_goes_out_of_its_way() {
         let mut footprint = Footprint::default();
         footprint.find(&mut scene.step());
         if seed % 2 == 0 {
-            // Faster than steps are, so that the clamp is seen at work.
+            // Faster than real steps, so that the clamp acts.
             for contact in &mut footprint.contacts {
                 let times = 4.0 * scene.traits.parts as f32;
                 contact.moved = contact.moved.map(|cells| times * cells);
@@ -153,7 +153,7 @@ fn paint_follows_the_brush_and_goes_out_of_its_way() {
             let pushed = follows * f64::from(c.cover * c.fraction) * f64::from(c.moved[0]);
             squished += usize::from((v - pushed).abs() > 1e-3);
         }
-        // Paint that follows as a whole where the bristles reach only its top is told apart.
+        // A fault: paint that follows as a whole where the bristles reach only its top.
         let mut whole = footprint.clone();
         for contact in &mut whole.contacts {
             (contact.cover, contact.fraction) = (contact.cover * contact.fraction, 1.0);
@@ -168,11 +168,9 @@ fn paint_follows_the_brush_and_goes_out_of_its_way() {
     assert!(seen.iter().all(|seen| *seen > 20), "{seen:?}");
 }
 
-/// A pad as wide as a few bristles is pressed down into an even film, at a pace at which brushes come
-/// down: what it penetrates is displaced as far as paint gives way by c, and nothing else moves it. Ridges
-/// stay beside bristles because c is so small that the pad does not press all of it out. Under a whole head
-/// paint is not pressed out from the middle: that takes a pressure that is solved for globally (Baxter 2004,
-/// § 6.11).
+/// A pad as wide as a few bristles is pressed down into an even film at the speed of a brush: the penetrated volume is
+/// displaced by c alone. Ridges stay beside bristles because c is too small to press all paint out. Under the middle of
+/// a whole head paint is not pressed out: that takes a globally solved pressure (Baxter 2004, § 6.11).
 #[test]
 fn what_is_penetrated_is_displaced_as_c_has_it() {
     let (squished, want) = (displaced(1.0), gives_way(1.0));
@@ -184,19 +182,19 @@ fn what_is_penetrated_is_displaced_as_c_has_it() {
     assert!((feeble - want).abs() > 0.1, "{feeble} {want}");
 }
 
-/// Radius of the pad, thickness of the film, how deep the pad goes, cells, and its steps.
+/// Radius of the pad, thickness of the film, depth of the pad, cells, and number of its steps.
 const RADIUS: f64 = 2.5;
 const FILM: f64 = 0.4;
 const DEPTH: f64 = 0.3;
 const STEPS: usize = 40;
 
-/// The pad is a paraboloid that is a film's thickness higher at its rim.
+/// The pad is a paraboloid whose rim is a film's thickness higher.
 fn bottom(x: usize, y: usize, depth: f64) -> f64 {
     let (dx, dy) = (x as f64 - 44.5, y as f64 - 44.5);
     FILM - depth * (1.0 - (dx * dx + dy * dy) / (RADIUS * RADIUS))
 }
 
-/// What [`displaced`] should be: −c·∇p between cells, by what lies on the fuller one.
+/// Expected result of [`displaced`]: −c·∇p between cells, from the paint on the fuller one.
 fn gives_way(share: f64) -> f64 {
     const FROM: usize = 30;
     const SIDE: usize = 30;
@@ -217,7 +215,7 @@ fn gives_way(share: f64) -> f64 {
                 if reached(from, &before).is_none() {
                     continue;
                 }
-                // The smaller c of the cells that are touched: that of the thicker paint.
+                // The smaller c of the touched cells: that of the thicker paint.
                 let touched = [one.map(|_| before[place]), other.map(|_| before[next])];
                 let thick = touched.into_iter().flatten().fold(0.0, f64::max);
                 let c = f64::from(SQUISH).min(f64::from(STABLE) / thick);
@@ -236,8 +234,8 @@ fn gives_way(share: f64) -> f64 {
     left / penetrated
 }
 
-/// Volume that has left the cells under the pad by the volume that the pad takes up below the film's
-/// surface, where c is `share` of what it is.
+/// Volume displaced from the cells under the pad, as a share of the pad's volume below the film's surface, with c
+/// multiplied by `share`.
 fn displaced(share: f32) -> f64 {
     let mut scene = Scene::new(0);
     scene.window = window(&Relief::flat(CELL_M));

@@ -1,5 +1,5 @@
-//! A brush among the cells: rods with a velocity at either end, so that a turning brush moves each cell as it turns
-//! (Baxter 2004, § 5.4.1).
+//! A brush among the cells: rods with a velocity at either end, so that a rotating brush moves each cell with its
+//! rotation (Baxter 2004, § 5.4.1).
 
 use std::ops::Range;
 
@@ -19,15 +19,15 @@ pub struct Rod {
     pub velocity: [[f32; 3]; 2],
 }
 
-/// Cells beyond a rod whose faces have its velocity.
+/// Distance from a rod within which faces have its velocity, cells.
 const BESIDE: f32 = 1.5;
 
-/// A rod's lowest end and the way to the other, with what its distance from places of a row needs.
+/// A rod's lowest end and the vector to the other, with precomputed terms for its distance from places of a row.
 #[derive(Clone, Copy)]
 struct Line {
     from: [f32; 3],
     way: [f32; 3],
-    /// The inverse of the square of the way; 0 of a ball.
+    /// Inverse of the vector's square; 0 of a ball.
     inverse: f32,
     radius: f32,
 }
@@ -45,7 +45,7 @@ impl Line {
         }
     }
 
-    /// Distance from its surface, and how far along it the nearest place lies, from 0 to 1.
+    /// Distance from its surface, and parameter of the nearest place along it, 0 to 1.
     #[inline(always)]
     fn nearest(&self, x: f32, y: f32, z: f32) -> [f32; 2] {
         let (x, y, z) = (x - self.from[0], y - self.from[1], z - self.from[2]);
@@ -59,7 +59,7 @@ impl Line {
 }
 
 impl Rod {
-    /// True if it is somewhere: a rod without finite numbers is nowhere.
+    /// True if its numbers are finite; other rods are ignored.
     fn is_finite(&self) -> bool {
         let numbers = self.ends.iter().chain(&self.velocity).flatten();
         self.radius.is_finite() && numbers.into_iter().all(|number| number.is_finite())
@@ -67,7 +67,7 @@ impl Rod {
 }
 
 wide! {
-    /// Corners of a row that begins at a place.
+    /// Distances at the corners of a row that begins at a place.
     fn near_corners(distance: &mut [f32], line: Line, start: [f32; 3]) {
         let [x, y, z] = start;
         for i in 0..distance.len() {
@@ -78,7 +78,7 @@ wide! {
 }
 
 wide! {
-    /// Middles of faces of a row, the first of which lies at a place.
+    /// Distances and velocities at the middles of a row's faces, the first of which is at a place.
     fn near_faces(nearest: &mut [f32], velocity: &mut [f32], line: Line, ends: [f32; 2], start: [f32; 3]) {
         let [x, y, z] = start;
         let [first, last] = ends;
@@ -92,7 +92,7 @@ wide! {
     }
 }
 
-/// Room for rods among the cells.
+/// Buffers for rods among the cells.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Voxels {
     /// Distance of the nearest rod from each face, by axis; [`BESIDE`] between steps.
@@ -102,7 +102,7 @@ pub(crate) struct Voxels {
 }
 
 impl Voxels {
-    /// Adds rods to the solids of a window. Where several are near, the nearest one's velocity counts.
+    /// Adds rods to the solids of a window. Among several nearby rods the nearest one's velocity is used.
     pub(crate) fn add(&mut self, grid: &Grid, solids: &mut Solids, rods: &[Rod]) {
         for nearest in &mut self.nearest {
             nearest.resize(grid.len(), BESIDE);
@@ -143,7 +143,7 @@ impl Voxels {
     }
 }
 
-/// Adds rods to the solids of a window. Where several are near, the nearest one's velocity counts.
+/// Adds rods to the solids of a window. Among several nearby rods the nearest one's velocity is used.
 pub fn voxelise(grid: &Grid, solids: &mut Solids, rods: &[Rod]) {
     Voxels::default().add(grid, solids, rods);
 }

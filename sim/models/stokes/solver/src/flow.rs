@@ -22,12 +22,12 @@ pub enum Scheme {
     Split,
 }
 
-/// Number of iterations of a step; nothing else ends them.
+/// Fixed numbers of iterations of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// Steps for velocity and pressure at once.
+    /// Number of iterations for velocity and pressure at once.
     pub steps: usize,
-    /// Conjugate gradients that then make the velocity free of divergence.
+    /// Number of conjugate gradients that then remove the divergence of the velocity.
     pub projections: usize,
 }
 
@@ -40,16 +40,16 @@ impl Default for Effort {
     }
 }
 
-/// Rheology of the paint, time step and pull.
+/// Rheology of the paint, time step and body force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
     /// Side of a cell, m.
     pub cell_m: f64,
-    /// Length of a step, s.
+    /// Duration of a step, s.
     pub seconds: f64,
-    /// The paint.
+    /// Rheology of the paint.
     pub paint: Paint,
-    /// Acceleration, m/s².
+    /// Acceleration of the body force, m/s².
     pub pull: [f64; 3],
 }
 
@@ -62,18 +62,18 @@ pub struct Flow {
     pub velocity: [Vec<f32>; 3],
     /// Pressure by density in each cell, m²/s².
     pub pressure: Vec<f32>,
-    /// The scheme.
+    /// Scheme for velocity and pressure.
     pub scheme: Scheme,
-    /// Iterations of a step.
+    /// Numbers of iterations of a step.
     pub effort: Effort,
-    /// Part of what a cell has too much or lacks that leaves or enters it in a step.
+    /// Share of a cell's excess or deficit of volume that is corrected in a step.
     pub relief: f32,
-    /// Norms of the residual in the last step, with that of the first guess.
+    /// Norms of the residual in the last step, the first guess's included.
     pub norms: Vec<f64>,
     workspace: Option<Workspace>,
 }
 
-/// Fields that are kept from one step to the next, so that a step allocates nothing.
+/// Fields kept from one step to the next, so that a step allocates nothing.
 #[derive(Clone, Debug)]
 struct Workspace {
     domain: Arc<Domain>,
@@ -99,7 +99,7 @@ impl Flow {
         }
     }
 
-    /// Paint at rest on another grid, in the same workspace.
+    /// Paint at rest on another grid, in the same buffers.
     pub fn restart(&mut self, grid: &Grid) {
         self.grid = *grid;
         for field in self.velocity.iter_mut().chain([&mut self.pressure]) {
@@ -108,8 +108,8 @@ impl Flow {
         }
     }
 
-    /// One step with cells filled to a fraction, between solids; returns what the equations saw of the window: its layers
-    /// up to the second above the highest paint. Once the caller has dropped it, its workspace serves the next step.
+    /// One step with cells filled to a fraction, between solids. Returns the domain of the equations: the layers up to
+    /// the second above the highest paint. Dropping it frees its buffers for the next step.
     pub fn step(&mut self, fill: &[f32], solids: &Solids, conditions: &Conditions) -> Arc<Domain> {
         let least = match self.scheme {
             Scheme::Unified => LEAST_FILL,
@@ -142,8 +142,8 @@ impl Flow {
         domain
     }
 
-    /// Bristles drag paint along: a face has their velocity by a share d/(1 + d) with d = τR, R their resistance, and then
-    /// resists change by as much more. What pulls at paint does not pull at them.
+    /// Drag of bristles on paint: a face takes the share d/(1 + d) of their velocity, with d = τR and R their
+    /// resistance, and its inertia grows accordingly. The body force acts on paint alone.
     fn drag(&mut self, domain: &mut Domain, solids: &Solids, conditions: &Conditions) {
         let Some(resistance) = &solids.resistance else {
             return;
@@ -242,7 +242,7 @@ impl Flow {
             &solids.velocity,
             &mut workspace.right,
         );
-        // The equations know the pressure by the velocity that it makes in a step.
+        // The unknown pressure is the velocity that it causes in a step.
         let alpha = f64::from(weights(tau)[0]);
         let to_pressure = (conditions.cell_m / (alpha * conditions.seconds)) as f32;
         flat::rescale(&mut self.pressure, &domain.wet, 1.0 / to_pressure);
@@ -262,8 +262,8 @@ impl Flow {
         flat::rescale(&mut self.pressure, &domain.wet, to_pressure);
     }
 
-    /// Lets a cell that is fuller than full, as rounding and moving solids leave it, give a part of that away in a step,
-    /// and one within the paint that is not full take as much in.
+    /// Lets an overfull cell, left by rounding and moving solids, expel a part of its excess in a step, and one within
+    /// the paint that is not full take in a part of its deficit.
     fn relieve(
         &self,
         domain: &Domain,
@@ -276,7 +276,7 @@ impl Flow {
         flat::relieve(displaced, &domain.wet, fill, per_step, span);
     }
 
-    /// Velocities of air beside paint: the mean of those around it, so that paint that comes there moves on with it.
+    /// Velocities of air beside paint: the mean of those around it, so that paint that arrives there keeps its motion.
     fn extrapolate(&mut self, domain: &Domain, spare: &mut Vec<f32>) {
         let span = Span::of(&self.grid, self.grid.range());
         for (axis, u) in self.velocity.iter_mut().enumerate() {
@@ -287,7 +287,7 @@ impl Flow {
         }
     }
 
-    /// Largest divergence of the paint, by the largest velocity and a cell.
+    /// Largest divergence of the paint, relative to the largest velocity divided by a cell.
     #[must_use]
     pub fn divergence(&self, domain: &Domain, solids: &Solids) -> f64 {
         let flux = |axis: usize, place: usize| {
@@ -327,13 +327,13 @@ impl Flow {
     }
 }
 
-/// The layers of a window that a step solves: up to the second above the highest cell that is filled at least so far.
+/// The layers of a window that a step solves: up to the second above the highest cell with at least the fill `least`.
 #[must_use]
 pub fn layers_with_paint(grid: &Grid, fill: &[f32], least: f32) -> Grid {
     grid.below(highest(grid, fill, least) + 2)
 }
 
-/// Number of layers up to the highest cell that is filled so far.
+/// Number of layers up to the highest cell with at least the fill `least`.
 fn highest(grid: &Grid, fill: &[f32], least: f32) -> usize {
     let [width, height, depth] = grid.cells.map(|cells| cells as isize);
     let has_paint = |z: &isize| {

@@ -1,35 +1,35 @@
 //! Staggered (MAC) grid: pressure and paint in the middle of a cell, velocities on its faces, shear on its edges (Harlow
 //! and Welch 1965).
 //!
-//! Every field has the same layout, x fastest, with one more layer below and two above: index [`Grid::at`]`(i, j, k)` is
-//! cell (i, j, k), its lower face of an axis, its lower edge and its lower corner. So one flat loop with three strides
-//! serves all of them, and what lies beyond the grid is a number like any other.
+//! Every field has the same layout, x fastest, with one more layer below and two above: index [`Grid::at`]`(i, j, k)`
+//! is cell (i, j, k), its lower face of an axis, its lower edge and its lower corner. So one flat loop with three
+//! strides serves all of them, and values beyond the grid need no special case.
 
-/// A side of the grid.
+/// Condition at a side of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// A wall that paint sticks to.
     NoSlip,
-    /// A plane of symmetry: nothing goes through it, and it takes up no shear.
+    /// A plane of symmetry: without flow through it and without shear.
     Slip,
 }
 
-/// The two sides of an axis.
+/// Both sides of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
-    /// The last cell lies beside the first.
+    /// Periodic: the last cell is beside the first.
     Periodic,
     /// Lower and upper side.
     Sides([Side; 2]),
 }
 
-/// Layers beyond the cells of an axis.
-const BEYOND: usize = 3;
+/// Number of layers beyond the cells of an axis.
+const MARGIN_LAYERS: usize = 3;
 
 /// Cells of a window and its sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
-    /// Cells of each axis.
+    /// Number of cells along each axis.
     pub cells: [usize; 3],
     /// Sides of each axis.
     pub ends: [Ends; 3],
@@ -43,20 +43,20 @@ impl Grid {
         Self { cells, ends }
     }
 
-    /// Places from one cell to the next of an axis.
+    /// Index offset from one cell to the next of an axis.
     #[must_use]
     pub const fn stride(&self, axis: usize) -> usize {
         match axis {
             0 => 1,
-            1 => self.cells[0] + BEYOND,
-            _ => (self.cells[0] + BEYOND) * (self.cells[1] + BEYOND),
+            1 => self.cells[0] + MARGIN_LAYERS,
+            _ => (self.cells[0] + MARGIN_LAYERS) * (self.cells[1] + MARGIN_LAYERS),
         }
     }
 
-    /// Numbers in a field.
+    /// Length of a field.
     #[must_use]
     pub const fn len(&self) -> usize {
-        self.stride(2) * (self.cells[2] + BEYOND)
+        self.stride(2) * (self.cells[2] + MARGIN_LAYERS)
     }
 
     /// True if it has no cells.
@@ -71,15 +71,15 @@ impl Grid {
         vec![0.0; self.len()]
     }
 
-    /// Place of a cell, its lower faces, edges and corner; −1 is the layer below.
+    /// Index of a cell, its lower faces, edges and corner; −1 is the layer below.
     #[must_use]
     pub const fn at(&self, cell: [isize; 3]) -> usize {
         let [x, y, z] = cell;
         (x + 1) as usize + (y + 1) as usize * self.stride(1) + (z + 1) as usize * self.stride(2)
     }
 
-    /// The lowest layers, an even number of them, with fields that are the beginning of this grid's. Where layers are left
-    /// out, nothing goes through the upper side.
+    /// The lowest layers, rounded up to an even number; their fields are the beginning of this grid's. Where layers are
+    /// left out, nothing flows through the upper side.
     #[must_use]
     pub fn below(&self, layers: usize) -> Self {
         let layers = layers.next_multiple_of(2);
@@ -93,19 +93,19 @@ impl Grid {
         grid
     }
 
-    /// Places of all cells, row after row.
+    /// Indices of all cells, row by row.
     pub fn places(&self) -> impl Iterator<Item = usize> + use<> {
         self.block([0; 3], self.cells.map(|cells| cells as isize))
     }
 
-    /// Places from the first cell up to but not with the second.
+    /// Indices of a half-open block of cells.
     pub fn block(&self, from: [isize; 3], to: [isize; 3]) -> impl Iterator<Item = usize> + use<> {
         let grid = *self;
         let row = move |y, z| (from[0]..to[0]).map(move |x| grid.at([x, y, z]));
         (from[2]..to[2]).flat_map(move |z| (from[1]..to[1]).flat_map(move |y| row(y, z)))
     }
 
-    /// Cell of a place.
+    /// Cell of an index.
     #[must_use]
     pub const fn cell(&self, place: usize) -> [isize; 3] {
         let (row, plane) = (self.stride(1), self.stride(2));
@@ -121,15 +121,15 @@ impl Grid {
         self.ends[axis] == Ends::Periodic
     }
 
-    /// Range of places that flat loops go over: all cells and the faces above them; each place before or after one of
-    /// them by a stride is one of the field.
+    /// Index range of flat loops: all cells and the faces above them; one stride before or after any of them is still
+    /// in the field.
     #[must_use]
     pub const fn range(&self) -> std::ops::Range<usize> {
         let reach = self.stride(2);
         reach..self.len() - reach
     }
 
-    /// Copies what lies beyond the periodic sides from the opposite side.
+    /// Fills the values beyond the periodic sides from the opposite side.
     pub fn wrap<T: Copy>(&self, field: &mut [T]) {
         for axis in (0..3).filter(|axis| self.is_periodic(*axis)) {
             let cells = self.cells[axis];
@@ -141,7 +141,7 @@ impl Grid {
         }
     }
 
-    /// Place of the cell that a place beyond a periodic side stands for.
+    /// Index of the cell that an index beyond a periodic side stands for.
     #[must_use]
     pub fn wrapped(&self, place: usize) -> usize {
         let mut cell = self.cell(place);
@@ -151,14 +151,14 @@ impl Grid {
         self.at(cell)
     }
 
-    /// Lower faces across an axis, each once: with the upper side unless it is the lower one.
+    /// Lower faces across an axis, each once: including the upper side unless that is the lower one.
     pub fn faces(&self, axis: usize) -> impl Iterator<Item = usize> + use<> {
         let mut to = self.cells.map(|cells| cells as isize);
         to[axis] += isize::from(!self.is_periodic(axis));
         self.block([0; 3], to)
     }
 
-    /// The cell before a face of [`faces`](Self::faces).
+    /// Index of the cell before a face of [`faces`](Self::faces).
     #[must_use]
     pub fn before(&self, axis: usize, face: usize) -> usize {
         let before = face - self.stride(axis);
@@ -169,7 +169,7 @@ impl Grid {
         }
     }
 
-    /// Sets what lies beyond the periodic sides to 0, where a flat loop has left what means nothing.
+    /// Sets the values beyond the periodic sides to 0, where a flat loop has left meaningless ones.
     pub fn clear(&self, field: &mut [f32]) {
         for axis in (0..3).filter(|axis| self.is_periodic(*axis)) {
             let cells = self.cells[axis];
@@ -179,7 +179,7 @@ impl Grid {
         }
     }
 
-    /// Writes a layer across an axis, with what lies beyond the sides; −1 is the layer below the first.
+    /// Writes a layer across an axis, including its values beyond the sides; −1 is the layer below the first.
     pub fn fill_layer(&self, field: &mut [f32], axis: usize, layer: isize, value: f32) {
         let start = (layer + 1) as usize * self.stride(axis);
         match axis {
@@ -199,7 +199,7 @@ impl Grid {
         }
     }
 
-    /// Sets what lies beyond the cells on all sides to 0.
+    /// Sets the values beyond the cells on all sides to 0.
     pub fn clear_beyond(&self, field: &mut [f32]) {
         for axis in 0..3 {
             let cells = self.cells[axis] as isize;
@@ -209,11 +209,11 @@ impl Grid {
         }
     }
 
-    /// Calls for each place of the lowest layer across an axis.
+    /// Calls for each index of the lowest layer across an axis.
     fn layer(&self, axis: usize, mut each: impl FnMut(usize)) {
         let [a, b] = others(axis);
-        for i in 0..self.cells[b] + BEYOND {
-            for j in 0..self.cells[a] + BEYOND {
+        for i in 0..self.cells[b] + MARGIN_LAYERS {
+            for j in 0..self.cells[a] + MARGIN_LAYERS {
                 each(i * self.stride(b) + j * self.stride(a));
             }
         }

@@ -1,13 +1,13 @@
 //! Stokes Paint: viscous paint as a volume (Baxter 2004, ch. 5).
 //!
 //! A window of cells holds paint in counted quanta ([`volume`]). In each step the brush is put among the cells
-//! ([`body`]), velocity and pressure are found on a staggered grid ([`flow`]), and paint is carried along: [`step`] shows
-//! the whole of it. [`surface`] says where the surface lies.
+//! ([`body`]), velocity and pressure are computed on a staggered grid ([`flow`]), and paint is advected: [`step`] has
+//! all of it. [`surface`] finds the surface.
 //!
-//! The solver ([`unified`]) finds velocity and pressure at once, backward in time, so that steps of any length are
-//! stable. What it sees of a window are volume fractions and distances ([`domain`]), on which [`operator`] works;
-//! [`multigrid`] preconditions it. The dissertation's scheme is [`flow::Scheme::Split`]. Stresses are those of a
-//! Herschel-Bulkley fluid ([`rheology`]).
+//! The solver ([`unified`]) computes velocity and pressure at once, by backward Euler, so that steps of any length are
+//! stable. Its domain is volume fractions and distances ([`domain`]), on which [`operator`] acts; [`multigrid`]
+//! preconditions it. The dissertation's scheme is [`flow::Scheme::Split`]. Stresses are those of a Herschel-Bulkley
+//! fluid ([`rheology`]).
 //!
 //! ```
 //! use maulstick_stokes::body::Rod;
@@ -41,18 +41,18 @@
 //!
 //! # Notes on the solver
 //!
-//! - Cells and faces take part by volume fractions, walls and brush by distance, so a surface lies anywhere in a cell.
-//!   Dry paint lowers the distance to what the window lies on. Edges with a velocity of air take up no shear, which is
-//!   the free surface's whole condition.
+//! - Cells and faces take part by volume fractions, walls and brush by distance, so a surface may be anywhere in a
+//!   cell. Dry paint lowers the distance to the base of the window. Edges with a velocity of air transmit no shear,
+//!   which is the free surface's whole condition.
 //! - Velocity and pressure are found by generalised conjugate residuals, preconditioned by a V-cycle for each velocity
 //!   component and one for the pressure. The drag of walls on thin paint counts as mass: preconditioned by mass and
 //!   viscosity alone (Cahouet and Chabard), paint four cells thick under a brush 128 cells wide does not converge in
-//!   fifty iterations; with it the residual falls tenfold every three. A cell's viscous part goes by the diagonals of
-//!   its own faces; one number for all stalls at cells that a solid cuts. Conjugate gradients with multigrid then
-//!   remove the divergence that is left. All iteration counts are fixed.
-//! - Loops go over stretches with unknowns, which cores share in parts that do not depend on their number.
-//! - Paint moves in quanta, one axis after the other in an order that turns. What rounding and solids leave too full is
-//!   a source in the next step's continuity equation.
+//!   fifty iterations; with it the residual falls tenfold every three. A cell's viscous part uses the diagonals of its
+//!   own faces; a common number stalls at cells cut by a solid. Conjugate gradients with multigrid then remove the
+//!   remaining divergence. All iteration counts are fixed.
+//! - Loops visit stretches with unknowns, in parts that are independent of the number of cores.
+//! - Paint moves in quanta, one axis after the other in a rotating order. An excess left by rounding and solids is a
+//!   source in the next step's continuity equation.
 //! - The oracle (`tests/oracle`) writes a step as a sum of squares and eliminates.
 
 pub mod body;

@@ -1,8 +1,8 @@
-//! The Stokes operator: momentum α·M·u + β·Eᵀ(2μE·u) + Gp on faces, and the volume that leaves each cell.
+//! The Stokes operator: momentum α·M·u + β·Eᵀ(2μE·u) + Gp on faces, and the outflow of each cell.
 //!
-//! E is the rate of strain, on cells and edges; G is minus the adjoint of the divergence. Of the viscous part, what lies
-//! within one component of the velocity is a [stencil](Stencil), with which multigrid preconditions; the rest are cross
-//! terms of edges.
+//! E is the rate of strain, on cells and edges; G is minus the adjoint of the divergence. The viscous part within one
+//! component of the velocity is a [stencil](Stencil), which multigrid uses as preconditioner; the rest are cross terms
+//! of edges.
 
 use maulstick_num::wide;
 
@@ -22,7 +22,7 @@ pub struct Operator {
     stretch: Vec<f32>,
     /// β·μ·volume of edges.
     edge: [Vec<f32>; 3],
-    /// Of each edge, what a slope of one of its velocities does to the other.
+    /// Effect on each velocity of an edge by a slope of the other.
     cross: [Vec<f32>; 3],
 }
 
@@ -31,7 +31,7 @@ struct Face<'a> {
     stencil: &'a Stencil,
     area: &'a [f32],
     by: usize,
-    /// Of both edges beside it: cross weight, stride along which they lie beside each other, and the other velocity.
+    /// For both edges beside it: cross weight, stride between them, and the other velocity.
     edges: [(&'a [f32], usize, &'a [f32]); 2],
 }
 
@@ -69,7 +69,7 @@ wide! {
 }
 
 wide! {
-    /// into = weight·b + sign·(volume that leaves each wet cell).
+    /// into = weight·b + sign·(outflow of each wet cell).
     fn outflow_flat(into: &mut [f32], weights: [f32; 2], b: &[f32], u: [&[f32]; 3], domain: &Domain, span: Span) {
         let [weight, sign] = weights;
         let by = [1, span.row, span.plane];
@@ -91,7 +91,7 @@ wide! {
     }
 }
 
-/// into = weight·b + sign·(volume that leaves each wet cell), in stretches; velocities are wrapped.
+/// into = weight·b + sign·(outflow of each wet cell), in stretches; velocities are wrapped.
 pub(crate) fn outflow(
     domain: &Domain,
     runs: &Runs,
@@ -107,7 +107,7 @@ pub(crate) fn outflow(
 }
 
 wide! {
-    /// weight of an edge: its share times the mean viscosity of the wet cells around it.
+    /// Weight of an edge: its share times the mean viscosity of the wet cells around it.
     fn weigh_edges(into: &mut [f32], edge: &[f32], beta: f32, wet: &[f32], viscosity: &[f32], by: [usize; 2], span: Span) {
         let [a, b] = by;
         let (one, two) = (span.here(wet), span.before(wet, a));
@@ -154,14 +154,14 @@ wide! {
     }
 }
 
-/// Place of an axis among the [others] of an edge.
+/// Index of an axis among the [others] of an edge.
 fn which(edge: usize, axis: usize) -> usize {
     usize::from(others(edge)[1] == axis)
 }
 
 impl Operator {
-    /// Finds the weights for α of the mass and β of viscosity, which is relative to the window's by cell, and writes the
-    /// stencil of each component of the velocity.
+    /// Computes the weights for α of the mass and β of viscosity, which is relative to the window's by cell, and writes
+    /// the stencil of each component of the velocity.
     pub fn renew(
         &mut self,
         domain: &Domain,
@@ -217,7 +217,7 @@ impl Operator {
         }
     }
 
-    /// into = A·x, of the equations of the window whose components and Laplacian these hierarchies are; wraps x.
+    /// into = A·x for the window of these hierarchies of components and Laplacian; wraps x.
     pub fn apply(
         &self,
         domain: &Domain,
@@ -270,7 +270,7 @@ wide! {
 }
 
 wide! {
-    /// Air beside paint has no pressure: it is known.
+    /// Air beside paint has no unknown pressure.
     fn mark_known(known: &mut [f32], links: &[Vec<f32>; 3], span: Span) {
         let (x, x_high) = (span.here(&links[0]), span.after(&links[0], 1));
         let (y, y_high) = (span.here(&links[1]), span.after(&links[1], span.row));
@@ -283,8 +283,8 @@ wide! {
     }
 }
 
-/// Writes the pressure's Laplacian: what leaves a cell by the gradient that a pressure gives to faces with their mass and what
-/// walls drag at them, as if it were mass.
+/// Writes the pressure's Laplacian: the outflow of a cell by the pressure gradient on faces, with their mass and the
+/// walls' drag, counted as mass.
 pub fn laplacian(domain: &Domain, wall: f32, stencil: &mut Stencil) {
     let grid = domain.grid;
     stencil.fit(&grid);

@@ -1,7 +1,7 @@
 //! Generalised conjugate residuals: directions whose images under an operator are orthogonal to each other.
 //!
-//! Images are made orthogonal to those before; directions are kept as they came, and weights of them are found at the end,
-//! which is half the work. After [`MEMORY`] directions all begin anew from where they have come to.
+//! Images are made orthogonal to earlier ones; directions are kept unchanged, and their weights are computed at the
+//! end, which is half the work. After [`MEMORY`] directions the iteration restarts from its current solution.
 
 use maulstick_num::{fork_join, wide};
 
@@ -9,39 +9,39 @@ use crate::operator::Unknowns;
 use crate::stencil::Stencil;
 use crate::vector::{Sum, add_products, add_scaled};
 
-/// Directions at most.
+/// Greatest number of directions.
 const MEMORY: usize = 24;
-/// Places that loops over many fields go over at a time.
+/// Number of places that loops over many fields process at a time.
 const TILE: usize = 2048;
-/// Places of all fields and directions from which on cores share a loop over them.
+/// Number of places of all fields and directions from which cores share a loop over them.
 const WORTH: usize = 1 << 14;
-/// Part of an image's square below which what is left of it is made orthogonal again.
+/// Share of an image's square below which its remainder is orthogonalised again.
 const CANCELLED: f64 = 1e-3;
 
-/// A direction and what is left of its image once it is orthogonal to those before.
+/// A direction, and its image made orthogonal to earlier ones.
 #[derive(Clone, Debug, Default)]
 struct Direction {
     z: Unknowns,
     q: Unknowns,
     /// Square of the image.
     squared: f64,
-    /// Parts of earlier images that were in the image.
+    /// Components along earlier images.
     parts: [f64; MEMORY],
-    /// Part of the residual that it answers.
+    /// Part of the residual that it removes.
     answers: f64,
 }
 
-/// The residual and the directions so far; room for them is kept.
+/// The residual and the directions so far, in reused buffers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Residuals {
     residual: Unknowns,
     directions: Vec<Direction>,
     used: usize,
-    /// Stretches that directions are 0 outside of.
+    /// Stretches outside of which directions are 0.
     runs: [crate::runs::Runs; 4],
 }
 
-/// Sums of one field: products of an image with those before, with itself and with the residual.
+/// Sums of one field: products of an image with earlier ones, with itself and with the residual.
 type Sums = [f64; MEMORY + 2];
 
 /// One field of the unknowns with those of all directions.
@@ -79,7 +79,7 @@ impl Residuals {
         &mut self.residual
     }
 
-    /// Takes A·x away from b; the norm of what is left.
+    /// Subtracts A·x from b; returns the norm of the residual.
     pub(crate) fn begin(&mut self, stencils: [&Stencil; 4], b: &Unknowns) -> f64 {
         self.used = 0;
         let mut unused: [Vec<f32>; 4] = std::array::from_fn(|_| Vec::new());
@@ -93,7 +93,7 @@ impl Residuals {
         sums[0].sqrt()
     }
 
-    /// The residual and room for the next direction and its image.
+    /// The residual, and buffers for the next direction and its image.
     pub(crate) fn next(
         &mut self,
         stencils: [&Stencil; 4],
@@ -115,7 +115,8 @@ impl Residuals {
         (std::mem::take(r), std::mem::take(z), std::mem::take(q))
     }
 
-    /// Takes up a direction with its image; the norm of the residual once it is answered, or none if it says nothing.
+    /// Adds a direction with its image; returns the norm of the reduced residual, or `None` if the direction is
+    /// negligible.
     pub(crate) fn add(
         &mut self,
         stencils: [&Stencil; 4],
@@ -187,7 +188,7 @@ impl Residuals {
         Some(sums[0].sqrt())
     }
 
-    /// Adds what all directions answer.
+    /// Adds the directions, weighted, to the solution.
     pub(crate) fn end(&mut self, stencils: [&Stencil; 4], x: &mut Unknowns) {
         let directions = &self.directions[..self.used];
         let mut weights = [0.0; MEMORY];
@@ -211,8 +212,8 @@ impl Residuals {
     }
 }
 
-/// Calls for each of the four fields, on several cores where the number of directions is worth it; sums are added up in their
-/// order.
+/// Calls for each of the four fields, on several cores where the number of directions justifies it; sums are added up
+/// in their order.
 fn over(
     (stencils, directions): ([&Stencil; 4], usize),
     own: &mut Unknowns,
@@ -257,7 +258,7 @@ fn tiles(stencil: &Stencil) -> impl Iterator<Item = std::ops::Range<usize>> + '_
     })
 }
 
-/// Products of an image with those before, with itself and with the residual.
+/// Products of an image with earlier ones, with itself and with the residual.
 fn multiply_with(field: &mut Field<'_>, before: &[Direction]) {
     let mut sums: [Sum; MEMORY + 2] = [Sum::default(); MEMORY + 2];
     for tile in tiles(field.stencil) {
@@ -273,7 +274,7 @@ fn multiply_with(field: &mut Field<'_>, before: &[Direction]) {
     field.sums = sums.map(|sum| sum.iter().sum());
 }
 
-/// Takes shares of those before out of an image; its square and its product with the residual.
+/// Subtracts shares of earlier images from an image; its square and its product with the residual.
 fn take_away(field: &mut Field<'_>, before: &[Direction], shares: &[f64]) {
     let mut sums: [Sum; 2] = [Sum::default(); 2];
     for tile in tiles(field.stencil) {

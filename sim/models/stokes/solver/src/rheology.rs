@@ -9,21 +9,21 @@ use crate::domain::Domain;
 use crate::grid::others;
 use crate::stencil::Span;
 
-/// Largest viscosity, by that of sheared paint.
+/// Largest viscosity relative to that of sheared paint.
 pub const LARGEST_RELATIVE_VISCOSITY: f64 = 2000.0;
-/// Smallest viscosity of shear-thinning paint, by that at the reference shear rate.
+/// Smallest viscosity of shear-thinning paint relative to that at the reference shear rate.
 const LEAST_RELATIVE_VISCOSITY: f64 = 1e-3;
 
-/// Rheology of a paint, by its density: stresses are in m²/s², viscosities in m²/s.
+/// Rheology of a paint, divided by its density: stresses are in m²/s², viscosities in m²/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Paint {
     /// Kinematic viscosity K·γ̇ⁿ⁻¹/ρ at [`rate`](Self::rate), m²/s.
     pub viscosity: f64,
-    /// Yield stress by density, m²/s².
+    /// Yield stress divided by density, m²/s².
     pub yields: f64,
-    /// Flow index n: 1 for a Bingham fluid, less for paint that shear makes thinner.
+    /// Flow index n: 1 for a Bingham fluid, less for shear-thinning paint.
     pub index: f64,
-    /// Shear rate at which the viscosity is measured, 1/s.
+    /// Reference shear rate of the viscosity, 1/s.
     pub rate: f64,
 }
 
@@ -39,7 +39,7 @@ impl Paint {
         }
     }
 
-    /// Viscosity at a shear rate in 1/s, by that at the reference rate.
+    /// Viscosity at a shear rate in 1/s, relative to that at the reference rate.
     #[must_use]
     pub fn relative(&self, rate: f64) -> f64 {
         let least = self.yields / (self.viscosity * LARGEST_RELATIVE_VISCOSITY);
@@ -53,7 +53,7 @@ impl Paint {
         (thins + yields).clamp(LEAST_RELATIVE_VISCOSITY, LARGEST_RELATIVE_VISCOSITY)
     }
 
-    /// Writes the relative viscosity of each cell for velocities in m/s on cells of `cell_m`, by way of a field of room.
+    /// Writes the relative viscosity of each cell for velocities in m/s on cells of `cell_m`, with a scratch field.
     pub fn viscosities(
         &self,
         domain: &Domain,
@@ -88,7 +88,7 @@ impl Paint {
 }
 
 wide! {
-    /// As [`Paint::relative`] does where n = 1, of squared rates in velocities per cell.
+    /// [`Paint::relative`] for n = 1, of squared rates in velocities per cell.
     fn bingham(field: &mut [f32], yields: f64, cell_m: f64) {
         let least = yields / LARGEST_RELATIVE_VISCOSITY;
         for value in field {
@@ -144,7 +144,7 @@ wide! {
         let into = span.here_mut(into);
         for i in 0..into.len() {
             let shear = u_slope[i] * (u[i] - u_low[i]) + v_slope[i] * (v[i] - v_low[i]);
-            // Where there is no paint there is no shear.
+            // Without paint there is no shear.
             into[i] = if weight[i] > 0.0 { shear * shear } else { 0.0 };
         }
     }

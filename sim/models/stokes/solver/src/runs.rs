@@ -1,31 +1,30 @@
-//! Stretches of fields in which something is: loops go over them, so they cost by the paint in a window and not by the
-//! window.
+//! Non-empty stretches of fields: loops over them cost by the paint in a window and not by its size.
 
 use std::ops::Range;
 
 use maulstick_num::{fork_join, wide};
 
-/// Places that begin or end a stretch together.
+/// Alignment of the beginning and end of a stretch, places.
 const BLOCK: usize = 16;
-/// Places between two stretches that are too few to part them.
+/// Greatest gap over which stretches are merged, places.
 const GAP: usize = 32;
-/// Places from which on cores share a loop.
+/// Number of places from which cores share a loop.
 const WORTH: usize = 4096;
-/// Places of a window from which on cores share what is done with it field by field.
+/// Number of places of a window from which cores share field-by-field work.
 const WINDOW_WORTH: usize = 14_000;
-/// Parts that all stretches are cut into; the same whatever the number of threads.
+/// Number of parts of all stretches, whatever the number of threads.
 const PARTS: usize = 4;
 
 /// Stretches of a field, from the first place on.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Runs {
     list: Vec<Range<usize>>,
-    /// Number of the first stretch of each part, and that of all.
+    /// Index of the first stretch of each part, and the number of all.
     cuts: [usize; PARTS + 1],
     len: usize,
 }
 
-/// Does the work on each share of a window, on several cores where its number of places is worth it.
+/// Does the work on each share of a window, on several cores where its number of places justifies it.
 pub(crate) fn share<S: Send>(places: usize, shares: &mut [S], work: impl Fn(&mut S) + Sync) {
     if places < WINDOW_WORTH {
         shares.iter_mut().for_each(work);
@@ -54,7 +53,7 @@ wide! {
     }
 }
 
-/// A part of the work on fields: its stretches, the place that its parts of the fields begin at, and these.
+/// A part of the work on fields: its stretches, the offset of its parts of the fields, and these.
 type Share<'a, T, const N: usize> = (&'a [Range<usize>], usize, [&'a mut [T]; N]);
 
 impl Runs {
@@ -66,7 +65,7 @@ impl Runs {
         self.cut();
     }
 
-    /// Cuts them into parts of the same length.
+    /// Cuts the stretches into parts of the same length.
     fn cut(&mut self) {
         let (mut run, mut done) = (0, 0);
         for part in 1..PARTS {
@@ -88,7 +87,7 @@ impl Runs {
         self.cuts[PARTS] = self.list.len();
     }
 
-    /// Parts of these stretches that are in none of others.
+    /// Pieces of these stretches outside of all `others`.
     #[must_use]
     pub fn without(&self, others: &Self) -> Vec<Range<usize>> {
         let mut left = Vec::new();
@@ -141,7 +140,7 @@ impl Runs {
         }
     }
 
-    /// Writes fields: calls with each stretch and its parts of them, on several cores where that is worth it.
+    /// Writes fields: calls with each stretch and its parts of them, on several cores where that is worthwhile.
     pub fn write<T: Send, const N: usize>(
         &self,
         fields: [&mut [T]; N],

@@ -8,10 +8,10 @@ use crate::grid::others;
 use crate::multigrid::Multigrid;
 use crate::stencil::Stencil;
 
-/// Conjugate gradients of diffusion and of pressure.
+/// Iterations of conjugate gradients for diffusion and for pressure.
 const ITERATIONS: [usize; 2] = [8, 12];
 
-/// Faces by what lies on both sides.
+/// Faces by the cells on both sides.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Face {
     Air,
@@ -30,7 +30,7 @@ fn face(domain: &Domain, axis: usize, place: usize) -> Face {
     }
 }
 
-/// One step of τ = νΔt/h², in which the pull gives paint a velocity: velocities with those of solids in place, and the
+/// One step of τ = νΔt/h², with the velocity added by the body force: velocities with those of solids in place, and the
 /// pressure times Δt/h.
 pub(crate) fn step(
     domain: &Domain,
@@ -103,7 +103,7 @@ fn diffuse(domain: &Domain, axis: usize, (tau, pull): (f32, f32), u: &mut [f32])
     grid.wrap(u);
 }
 
-/// Makes the velocity free of divergence; surface faces follow by continuity.
+/// Removes the divergence of the velocity; surface faces follow by continuity.
 fn project(
     domain: &Domain,
     velocity: &mut [Vec<f32>; 3],

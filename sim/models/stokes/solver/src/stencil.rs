@@ -1,5 +1,5 @@
-//! Seven-point operators, symmetric and positive: the pressure's Laplacian, and the part of viscosity that lies within
-//! one component of the velocity.
+//! Seven-point operators, symmetric and positive: the pressure's Laplacian, and the part of viscosity within one
+//! component of the velocity.
 //!
 //! (A·x)ᵢ = dᵢ·xᵢ − Σ lᵢⱼ·xⱼ with d the mass and all links l. A link to a place that is not active is one to the value 0.
 
@@ -19,20 +19,20 @@ pub struct Stencil {
     pub mass: Vec<f32>,
     /// 1 for an unknown, otherwise 0.
     pub active: Vec<f32>,
-    /// 1 for an unknown or a place whose value is known to be 0; 0 for one that there is not.
+    /// 1 for an unknown or a place whose value is known to be 0; 0 for an absent one.
     pub known: Vec<f32>,
     /// Diagonal, 0 where not active.
     pub(crate) diagonal: Vec<f32>,
-    /// Its inverse, 0 where not active.
+    /// Inverse of the diagonal, 0 where not active.
     pub(crate) inverse: Vec<f32>,
-    /// Where unknowns are.
+    /// Stretches with unknowns.
     pub(crate) runs: Runs,
-    /// Where they were before.
+    /// Earlier stretches with unknowns.
     runs_before: Runs,
 }
 
 impl Stencil {
-    /// One without links.
+    /// A stencil without links.
     #[must_use]
     pub fn new(grid: &Grid) -> Self {
         let mut stencil = Self::default();
@@ -40,7 +40,7 @@ impl Stencil {
         stencil
     }
 
-    /// Fits all fields to a grid; what they hold is to be written anew.
+    /// Fits all fields to a grid; their contents must be rewritten.
     pub(crate) fn fit(&mut self, grid: &Grid) {
         let [x, y, z] = &mut self.links;
         let (mass, active, known) = (&mut self.mass, &mut self.active, &mut self.known);
@@ -50,10 +50,10 @@ impl Stencil {
         }
     }
 
-    /// Finds the diagonal, once links and mass are known.
+    /// Computes the diagonal, once links and mass are known.
     pub fn finish(&mut self, grid: &Grid) {
         for axis in (0..3).filter(|axis| grid.is_periodic(*axis)) {
-            // A cell that lies beside itself has no link.
+            // A cell beside itself has no link.
             if grid.cells[axis] == 1 {
                 self.links[axis].fill(0.0);
             }
@@ -68,7 +68,7 @@ impl Stencil {
         self.runs.find(grid.range(), &self.active);
     }
 
-    /// Sets a field that is 0 but where unknowns were before to 0 where there is none any more.
+    /// Clears the places of former unknowns in a field that is 0 elsewhere.
     pub(crate) fn clear_left(&self, field: &mut [f32]) {
         if self.runs != self.runs_before {
             for run in self.runs_before.without(&self.runs) {
@@ -104,25 +104,25 @@ impl Span {
         &field[self.from..self.to]
     }
 
-    /// The same, of a field that is written.
+    /// The places of the loop, for writing.
     #[inline(always)]
     pub(crate) fn here_mut<'a, T>(&self, field: &'a mut [T]) -> &'a mut [T] {
         &mut field[self.from..self.to]
     }
 
-    /// All of a field that has only the places of the loop.
+    /// A whole field with only the places of the loop.
     #[inline(always)]
     pub(crate) fn own<'a, T>(&self, field: &'a mut [T]) -> &'a mut [T] {
         &mut field[..self.to - self.from]
     }
 
-    /// Places so far before those of the loop.
+    /// Places at an offset before those of the loop.
     #[inline(always)]
     pub(crate) fn before<'a, T>(&self, field: &'a [T], by: usize) -> &'a [T] {
         &field[self.from - by..self.to - by]
     }
 
-    /// Places so far after those of the loop.
+    /// Places at an offset after those of the loop.
     #[inline(always)]
     pub(crate) fn after<'a, T>(&self, field: &'a [T], by: usize) -> &'a [T] {
         &field[self.from + by..self.to + by]
@@ -161,7 +161,7 @@ impl<'a> Around<'a> {
 }
 
 impl Around<'_> {
-    /// Σ lᵢⱼ·xⱼ·yⱼ with y of another.
+    /// Σ lᵢⱼ·xⱼ·yⱼ with y of `other`.
     #[inline(always)]
     fn pull_times(&self, other: &Self, i: usize) -> f32 {
         let [[a, b], [c, d], [e, f]] = self.links;
@@ -194,7 +194,7 @@ wide! {
 }
 
 wide! {
-    /// into = weight·(b − A·x), where the weight is 0 of what is not active.
+    /// into = weight·(b − A·x), with weight 0 where not active.
     fn residual_flat(into: &mut [f32], weight: &[f32], b: &[f32], x: &[f32], stencil: &Stencil, span: Span) {
         let around = Around::of(&span, stencil, x);
         let (b, x, weight) = (span.here(b), span.here(x), span.here(weight));
@@ -270,7 +270,7 @@ impl Stencil {
         grid.clear(into);
     }
 
-    /// into = weight·(b − A·x), where the weight is 0 of what is not active; wraps x.
+    /// into = weight·(b − A·x), with weight 0 where not active; wraps x.
     pub(crate) fn residual(
         &self,
         grid: &Grid,
@@ -314,14 +314,14 @@ impl Stencil {
         });
     }
 
-    /// The first one, from x = 0.
+    /// The first Jacobi step, from x = 0.
     pub(crate) fn begin(&self, b: &[f32], omega: f32, into: &mut [f32]) {
         self.runs.write([into], |run, [into]| {
             begin_flat(into, &b[run.clone()], omega, &self.inverse[run]);
         });
     }
 
-    /// The first two, by way of a second field.
+    /// The first two Jacobi steps, with a second field as scratch.
     pub(crate) fn begin_twice(
         &self,
         grid: &Grid,

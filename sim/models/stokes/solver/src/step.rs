@@ -9,16 +9,16 @@ use crate::grid::Grid;
 use crate::surface;
 use crate::volume::Volume;
 
-/// Paint in a window, how it flows, and what it lies on.
+/// Paint in a window, its flow, and its base.
 #[derive(Clone, Debug)]
 pub struct Stokes {
     /// The paint.
     pub volume: Volume,
-    /// Its flow.
+    /// Flow of the paint.
     pub flow: Flow,
     /// Solids at rest: canvas and walls.
     pub base: Solids,
-    /// Base and brush, the open share of each cell, how full it is, and room.
+    /// Base and brush, the open share of each cell, its fill, and buffers.
     solids: Solids,
     open: Vec<f32>,
     fill: Vec<f32>,
@@ -40,8 +40,8 @@ impl Stokes {
         }
     }
 
-    /// Moves the paint for one step of a brush; returns what the equations saw, in room that serves the next step once it
-    /// is dropped.
+    /// Moves the paint for one step of a brush; returns the domain of the equations, whose buffers the next step reuses
+    /// once it is dropped.
     pub fn step(&mut self, brush: &[Rod], conditions: &Conditions) -> Arc<Domain> {
         let grid = self.volume.grid;
         self.solids.copy_from(&self.base);
@@ -57,8 +57,8 @@ impl Stokes {
         domain
     }
 
-    /// Dries all paint: it becomes a part of what the window lies on, whose surface is where the paint's was to an eighth of a
-    /// cell (Baxter 2004, § 5.4.6). Returns the quanta of each paint by cell, which the window no longer has.
+    /// Dries all paint: it becomes a part of the base, whose surface is that of the paint to an eighth of a cell
+    /// (Baxter 2004, § 5.4.6). Returns the quanta of each paint by cell, which are removed from the window.
     pub fn dry(&mut self) -> Vec<Vec<u32>> {
         let grid = self.volume.grid;
         let heights = self.heights();
@@ -81,7 +81,7 @@ impl Stokes {
         std::mem::replace(&mut self.volume.paints, empty)
     }
 
-    /// Height of the surface of each column, with what it lies on, cells; row after row.
+    /// Height of the surface of each column, including the base, cells; row by row.
     #[must_use]
     pub fn heights(&self) -> Vec<f32> {
         let grid = self.volume.grid;
@@ -131,7 +131,7 @@ mod tests {
             .map(|(wet, dry)| (wet - dry).abs())
             .fold(0.0, f32::max);
         assert!(off < 0.15, "{off}");
-        // As a whole cell would be.
+        // The rounded height of a whole cell.
         let rounded = before.iter().map(|height| (height - height.round()).abs());
         assert!(rounded.fold(0.0, f32::max) > 0.4);
     }

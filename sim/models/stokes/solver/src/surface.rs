@@ -1,12 +1,12 @@
-//! Where the surface of the paint lies, to a part of a cell: heights by column, and the whole of it as triangles.
+//! The surface of the paint with subcell accuracy: heights by column, and all of it as triangles.
 
 use crate::grid::Grid;
 
 /// Fill at the surface.
 const HALF: f32 = 0.5;
 
-/// Height of the paint of each column in cells, row after row; `None` where there is none. The two uppermost cells' fill
-/// counts, so that a level surface is exact.
+/// Height of the paint of each column in cells, row by row; `None` without paint. It uses the fill of the two uppermost
+/// cells, so that a level surface is exact.
 #[must_use]
 pub fn heights(grid: &Grid, fill: &[f32]) -> Vec<Option<f32>> {
     let [width, height, depth] = grid.cells.map(|cells| cells as isize);
@@ -19,7 +19,7 @@ pub fn heights(grid: &Grid, fill: &[f32]) -> Vec<Option<f32>> {
     grid.block([0; 3], [width, height, 1]).map(column).collect()
 }
 
-/// Unit normals of a surface of heights by column, row after row, by central differences; sides count as level.
+/// Unit normals of a surface of heights by column, row by row, by central differences; sides count as level.
 #[must_use]
 pub fn normals(width: usize, heights: &[f32]) -> Vec<[f32; 3]> {
     let rows = heights.len() / width.max(1);
@@ -38,7 +38,7 @@ pub fn normals(width: usize, heights: &[f32]) -> Vec<[f32; 3]> {
     (0..heights.len()).map(normal).collect()
 }
 
-/// Tetrahedra that a cube of eight cells' middles is cut into, around its diagonal: corners as bits x, y, z.
+/// Tetrahedra of a cube of eight cells' middles, around its diagonal: corners as bits x, y, z.
 const TETRAHEDRA: [[usize; 4]; 6] = [
     [0, 1, 3, 7],
     [0, 3, 2, 7],
@@ -48,8 +48,8 @@ const TETRAHEDRA: [[usize; 4]; 6] = [
     [0, 5, 1, 7],
 ];
 
-/// The surface as triangles in cells, seen counter-clockwise from the air (Doi and Koide 1991). It is closed, also where
-/// paint touches a side: beyond the grid there is air.
+/// The surface as triangles in cells, seen counter-clockwise from the air (Doi and Koide 1991). It is closed, also
+/// where paint touches a side: beyond the grid there is air.
 #[must_use]
 pub fn triangles(grid: &Grid, fill: &[f32]) -> Vec<[[f32; 3]; 3]> {
     let mut triangles = Vec::new();
@@ -77,7 +77,7 @@ pub fn triangles(grid: &Grid, fill: &[f32]) -> Vec<[[f32; 3]; 3]> {
     triangles
 }
 
-/// Place between two corners where the fill is a half; the same from either side.
+/// Place between two corners where the fill is a half, the same from either side.
 fn between(one: ([f32; 3], f32), other: ([f32; 3], f32)) -> [f32; 3] {
     let (low, high) = if one.1 <= other.1 {
         (one, other)
@@ -92,7 +92,7 @@ fn between(one: ([f32; 3], f32), other: ([f32; 3], f32)) -> [f32; 3] {
 fn cut(corners: [([f32; 3], f32); 4], into: &mut Vec<[[f32; 3]; 3]>) {
     let (full, empty): (Vec<_>, Vec<_>) = corners.into_iter().partition(|(_, fill)| *fill >= HALF);
     let mut add = |triangle: [[f32; 3]; 3]| {
-        // Out of the paint.
+        // Outward from the paint.
         let out = [0, 1, 2].map(|axis| empty[0].0[axis] - full[0].0[axis]);
         let [a, b, c] = triangle;
         let u = [0, 1, 2].map(|axis| b[axis] - a[axis]);
@@ -151,7 +151,8 @@ mod tests {
         assert!(off.fold(0.0, f32::max) < 1e-6, "{normal:?}");
     }
 
-    /// Triangles of a ball have its volume, and each of their edges is that of one other, run the other way.
+    /// The triangles of a ball enclose its volume, and each edge is shared with one other triangle, in opposite
+    /// direction.
     #[test]
     fn the_surface_of_a_ball_is_closed_and_has_its_volume() {
         let grid = Grid::walled([24; 3]);

@@ -1,9 +1,9 @@
-//! Velocity and pressure at once: backward Euler for the unsteady Stokes equations (Baxter 2004, eq. 5.2, 5.3), with the
-//! viscous and the pressure part of the free surface's condition in one (Larionov, Batty and Bridson 2017).
+//! Velocity and pressure at once: backward Euler for the unsteady Stokes equations (Baxter 2004, eq. 5.2, 5.3), with
+//! the viscous and the pressure part of the free surface's condition together (Larionov, Batty and Bridson 2017).
 //!
-//! Generalised conjugate residuals (Eisenstat, Elman and Schultz 1983), preconditioned by a V-cycle for each component of
-//! the velocity and, for the pressure, by Cahouet and Chabard (1988): α·L⁻¹ + 2βμ. Walls drag at thin paint as mass would, so
-//! that part is added to α: without it a film under a wide brush takes ten times as many steps.
+//! Generalised conjugate residuals (Eisenstat, Elman and Schultz 1983), preconditioned by a V-cycle for each component
+//! of the velocity and, for the pressure, by Cahouet and Chabard (1988): α·L⁻¹ + 2βμ. The drag of walls on thin paint
+//! acts like mass, so it is added to α: without it a film under a wide brush takes ten times as many steps.
 
 use maulstick_num::{fork_join, wide};
 
@@ -15,25 +15,25 @@ use crate::runs::share;
 use crate::stencil::{Span, Stencil};
 use crate::vector::add_scaled;
 
-/// Drag of walls on paint of a thickness of one, by its viscosity: between 3 for a film and 12 for a gap.
+/// Drag of walls on paint of thickness one, relative to its viscosity: between 3 for a film and 12 for a gap.
 const GAP_DRAG: f32 = 6.0;
 
-/// Unknowns of a component from which on cores share the cycles.
+/// Number of unknowns of a component from which cores share the cycles.
 const WORTH: usize = 3500;
 
-/// The equations of one step on one window, in room that is kept from one step to the next.
+/// The equations of one step on one window, in buffers kept from one step to the next.
 #[derive(Clone, Debug)]
 pub struct Unified {
     operator: Operator,
-    /// Of the three components of the velocity and of the pressure.
+    /// Hierarchies of the three components of the velocity and of the pressure.
     hierarchies: [Multigrid; 4],
     /// Viscous response to a change of volume, by cell.
     bulk: Vec<f32>,
     alpha: f32,
-    /// Drag of walls, by α: what a gradient of pressure has to overcome beside mass.
+    /// Drag of walls relative to α, which resists a pressure gradient like mass.
     wall: f32,
     residuals: Residuals,
-    /// Volume that is lacking, and the pressure that it makes.
+    /// Volume deficit, and the pressure that it causes.
     lacking: [Vec<f32>; 2],
 }
 
@@ -45,7 +45,7 @@ pub fn weights(tau: f64) -> [f32; 2] {
 }
 
 impl Unified {
-    /// Room for the equations of a window.
+    /// Buffers for the equations of a window.
     #[must_use]
     pub fn new(domain: &Domain) -> Self {
         let grid = &domain.grid;
@@ -61,7 +61,7 @@ impl Unified {
         }
     }
 
-    /// The equations for a step of τ = νΔt/h² with ν times a field of relative viscosities.
+    /// Sets the equations for a step of τ = νΔt/h² with ν times a field of relative viscosities.
     pub fn renew(&mut self, domain: &Domain, tau: f64, viscosity: &[f32]) {
         let grid = &domain.grid;
         let [alpha, beta] = weights(tau);
@@ -101,7 +101,7 @@ impl Unified {
         let [pressure_r] = [&r[3]];
         let [one, two, three, pressure] = &mut self.hierarchies;
         let unknowns = three.stencil().runs.len();
-        // The third one's loops, as those of the pressure, are shared among cores.
+        // The third component's loops, like those of the pressure, are shared among cores.
         let mut pairs = [(&mut *one, &r[0], &mut *u), (&mut *two, &r[1], &mut *v)];
         let work = |(hierarchy, from, into): &mut (&mut Multigrid, &Vec<f32>, &mut Vec<f32>)| {
             hierarchy.cycle(from, into);
@@ -131,7 +131,7 @@ impl Unified {
         });
     }
 
-    /// Solves A·x = b by `steps` from x; returns the norm of each residual, with that of the first guess.
+    /// Solves A·x = b by `steps` iterations from x; returns the norm of each residual, the first guess's included.
     pub fn solve(
         &mut self,
         domain: &Domain,
@@ -163,7 +163,7 @@ impl Unified {
         self.hierarchies.each_ref().map(Multigrid::stencil)
     }
 
-    /// Removes the divergence that is left of a velocity, by `iterations` of conjugate gradients.
+    /// Removes the remaining divergence of a velocity, by `iterations` of conjugate gradients.
     pub fn project(&mut self, domain: &Domain, b: &Unknowns, x: &mut Unknowns, iterations: usize) {
         let grid = domain.grid;
         let [u, v, w, p] = x;
@@ -191,8 +191,7 @@ impl Unified {
         runs.write([&mut **p], |run, [p]| add_scaled(p, self.alpha, &phi[run]));
     }
 
-    /// The momentum that a velocity with what the pull adds has, and the volume that solids displace: the right-hand
-    /// side.
+    /// The right-hand side: momentum of a velocity with the body force added, and the volume displaced by solids.
     pub fn right_hand_side(
         &self,
         domain: &Domain,
@@ -256,7 +255,7 @@ wide! {
 }
 
 wide! {
-    /// Takes what solids bring into wet cells across an axis.
+    /// Subtracts the inflow from solids into wet cells across an axis.
     fn displace(b: &mut [f32], domain: &Domain, axis: usize, u: &[f32], span: Span) {
         let by = [1, span.row, span.plane][axis];
         let (solid, free, area) = (&domain.solid[axis], &domain.free[axis], &domain.area[axis]);
@@ -273,8 +272,8 @@ wide! {
 }
 
 wide! {
-    /// The viscous part of the inverse Schur complement by cell: far from all sides 2βμ. Elsewhere the velocities around a
-    /// cell answer as their diagonals say, which is more beside a wall and less beside air.
+    /// The viscous part of the inverse Schur complement by cell: 2βμ far from all sides. Elsewhere it follows from the
+    /// diagonals of the velocities around a cell; it is larger beside a wall and smaller beside air.
     fn answer(bulk: &mut [f32], domain: &Domain, stencils: [&Stencil; 3], span: Span) {
         let wet = span.here(&domain.wet);
         let bulk = span.own(bulk);
@@ -299,7 +298,7 @@ wide! {
     }
 }
 
-/// Mean thickness of the paint, cells: how many lie above each other.
+/// Mean thickness of the paint, cells above each other.
 fn thickness(domain: &Domain) -> f32 {
     let grid = domain.grid;
     let [width, height, depth] = grid.cells;

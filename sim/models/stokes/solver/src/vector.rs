@@ -1,16 +1,17 @@
-//! Sums over fields. Every sum is of 16 partial sums of f64, each of a few numbers in f32, in a fixed order, so all registers give the same bytes, and
-//! parts of [stretches](Runs) are added up in their order, so any number of threads does.
+//! Sums over fields. Every sum consists of 16 partial sums of f64, each of a few numbers in f32, in a fixed order, so
+//! all registers give the same bytes. Parts of [stretches](Runs) are added up in their order, so the number of threads
+//! does not matter.
 
 use maulstick_num::wide;
 
 use crate::runs::Runs;
 
-/// Partial sums.
+/// Number of partial sums.
 const PARTS: usize = 16;
-/// Numbers whose products are added up in f32, by eights, before they are in f64.
+/// Number of products added up in f32, by eights, before they are in f64.
 const BLOCK: usize = 8 * PARTS;
 
-/// A sum in the making.
+/// An unfinished sum.
 pub(crate) type Sum = [f64; PARTS];
 
 wide! {

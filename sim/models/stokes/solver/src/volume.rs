@@ -1,10 +1,10 @@
 //! Paint in the cells of a window, counted in quanta, and its transport.
 //!
-//! The flux through a face is a number of quanta that one side loses and the other gains, so none is ever lost. A cell's
-//! surface is a plane across one axis in part and none in part, weighted by the normal (Noh and Woodward 1976; Yokoi 2007),
-//! which keeps it within a cell or two. Axes follow one another, in an order that turns; a cell's room changes with what
-//! flows through its faces along an axis, so that full cells stay full. What is asked of a cell beyond what it has is
-//! scaled down together.
+//! The flux through a face is a number of quanta that one side loses and the other gains, so none is ever lost. A
+//! cell's surface is a blend of a plane across one axis and a uniform fill, weighted by the normal (Noh and Woodward
+//! 1976; Yokoi 2007), which keeps it within a cell or two. Axes follow one another, in a rotating order; a cell's
+//! capacity changes with the flow through its faces along an axis, so that full cells stay full. Requests to a cell
+//! beyond its content are scaled down together.
 
 mod sweep;
 
@@ -14,13 +14,13 @@ use crate::domain::{Domain, LEAST_FILL};
 use crate::grid::Grid;
 use sweep::Sweep;
 
-/// Most of a cell that goes through one face in a part of a step.
+/// Greatest share of a cell that goes through one face in a part of a step.
 const LARGEST_COURANT: f32 = 0.5;
-/// Parts of a step at most; what is faster goes as far as they bring it.
+/// Greatest number of parts of a step; faster paint moves only as far as they allow.
 const MOST_PARTS: usize = 40;
-/// Room of a cell that solids fill, by that of an open one.
+/// Capacity of a cell filled by solids, relative to an open one.
 const LEAST_ROOM: f32 = 0.3;
-/// Orders of the axes, in turn.
+/// Orders of the axes, in rotation.
 const ORDERS: [[usize; 3]; 6] = [
     [0, 1, 2],
     [2, 1, 0],
@@ -41,18 +41,18 @@ pub struct Volume {
     pub paints: Vec<Vec<u32>>,
     /// Quanta of all paints, by cell.
     total: Vec<u32>,
-    /// True of each paint that there is any of.
+    /// True for each paint that is present.
     present: Vec<bool>,
-    /// Quanta that each cell has room for.
+    /// Capacity of each cell, quanta.
     room: Vec<f32>,
     fill: Vec<f32>,
     sweep: Sweep,
-    /// Number of the next order of axes.
+    /// Index of the next order of axes.
     turn: usize,
 }
 
 wide! {
-    /// Adds a paint to all others; any of its bits.
+    /// Adds a paint to the total, and its bits to the union of all bits.
     fn add(total: &mut [u32], paint: &[u32], bits: &mut u32) {
         let paint = &paint[..total.len()];
         let mut any = 0;
@@ -86,7 +86,7 @@ wide! {
 }
 
 wide! {
-    /// Largest component without its sign, as bits, of velocities that are unknowns.
+    /// Largest absolute component, as bits, of velocities that are unknowns.
     fn find_fastest(most: &mut u32, u: &[f32], free: &[f32]) {
         let free = &free[..u.len()];
         let mut fastest = 0;
@@ -115,7 +115,7 @@ impl Volume {
         }
     }
 
-    /// Fraction of each cell that is filled, of what solids leave open of it.
+    /// Fill of each cell, as a share of its open volume.
     #[must_use]
     pub fn fill(&mut self, open: &[f32]) -> Vec<f32> {
         let mut fill = self.grid.field();
@@ -123,7 +123,7 @@ impl Volume {
         fill
     }
 
-    /// The same, into a field.
+    /// Fill of each cell, written into a field.
     pub fn fill_into(&mut self, open: &[f32], fill: &mut [f32]) {
         self.add_up();
         fill_flat(fill, &self.total, open, self.capacity as f32);
@@ -173,7 +173,7 @@ impl Volume {
         self.add_up();
         self.sweep.begin(domain, self.capacity);
         for _ in 0..parts {
-            // Cells are squeezed along one axis and stretched along another; what is full stays full on the way.
+            // Cells are squeezed along one axis and stretched along another; full cells stay full in between.
             find_rooms(&mut self.room, open, self.capacity as f32);
             self.turn = (self.turn + 1) % 6;
             for axis in ORDERS[self.turn] {
@@ -222,7 +222,7 @@ impl Volume {
     }
 }
 
-/// True if there is paint in a row that does not flow.
+/// True if a row contains paint that does not flow.
 fn has_drops(total: &[u32], wet: &[f32]) -> bool {
     let mut found = 0;
     for (total, wet) in total.iter().zip(wet) {

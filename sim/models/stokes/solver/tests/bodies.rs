@@ -13,7 +13,7 @@ use maulstick_stokes::rheology::Paint;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;
 
-/// Drag on each sphere of a simple cubic array by Stokes' 6πμaU, U the mean velocity of the whole volume.
+/// Drag on each sphere of a simple cubic array, divided by Stokes' 6πμaU, with U the mean velocity of the whole volume.
 fn drag(cells: usize, volume_fraction: f64) -> f64 {
     let grid = Grid {
         cells: [cells; 3],
@@ -50,7 +50,7 @@ fn a_sphere_in_an_array_drags_as_zick_and_homsy_have_it() {
     assert!(other.abs() > 0.03, "a larger sphere passes");
 }
 
-/// Force on a disc that comes down on another, by 3πμR⁴V/(2h³): a quarter of it, above the plane of symmetry.
+/// Force on a disc that comes down on another, divided by 3πμR⁴V/(2h³): a quarter of it, above the plane of symmetry.
 fn squeeze(half_gap: usize, radius: f64) -> f64 {
     let cells = radius as usize + 3;
     let [symmetric, disc] = [[Side::Slip, Side::Slip], [Side::Slip, Side::NoSlip]].map(Ends::Sides);
@@ -135,10 +135,10 @@ fn energy_never_grows_whatever_the_step() {
                 let domain = flow.step(&fill, &solids, &conditions);
                 let energy = match scheme {
                     Scheme::Unified => flow.energy(&domain),
-                    // Its cells are paint or are not.
+                    // Its cells are either paint or not.
                     Scheme::Split => squares(&flow, &domain),
                 };
-                // Below that it is rounding.
+                // Below that is rounding.
                 assert!(
                     energy <= before * (1.0 + 1e-6) + 1e-12 * first,
                     "{scheme:?}, τ = {tau}, step {step}: {before:e} to {energy:e}"

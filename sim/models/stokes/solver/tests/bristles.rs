@@ -1,5 +1,5 @@
-//! Bristles as a porous body (Brinkman 1949): a film of thickness t on a wall, through which bristles of permeability K go at U,
-//! has u(z) = U·(1 − cosh((t − z)/√K)/cosh(t/√K)).
+//! Bristles as a porous body (Brinkman 1949): a film of thickness t on a wall, through which bristles of permeability K
+//! move at U, has u(z) = U·(1 − cosh((t − z)/√K)/cosh(t/√K)).
 
 use maulstick_num::exp;
 use maulstick_stokes::domain::Solids;
@@ -12,7 +12,7 @@ const FILM: usize = 16;
 /// Speed of the bristles, m/s.
 const SPEED: f32 = 0.1;
 
-/// Largest distance from the answer, by the speed of the bristles; they resist by so much of what they should.
+/// Largest error relative to the speed of the bristles, with their resistance multiplied by `share`.
 fn error(root_k: f64, share: f32) -> f64 {
     let periodic = Ends::Periodic;
     let grid = Grid {
@@ -59,7 +59,7 @@ fn paint_follows_bristles_as_far_as_the_wall_lets_it() {
         let error = error(root_k, 1.0);
         assert!(error < 0.01, "√K of {root_k} cells: {error}");
     }
-    // Of first order or better in cells by √K.
+    // First order or better in cells by √K.
     let [coarse, fine] = [2.0, 4.0].map(|root_k| error(root_k, 1.0));
     assert!(fine < 0.5 * coarse, "{coarse} {fine}");
 }

@@ -11,10 +11,10 @@ use maulstick_stokes::flow::{Flow, Scheme};
 use maulstick_stokes::grid::{Ends, Grid, Side};
 use maulstick_stokes::rheology::Paint;
 
-/// A step so long that the flow is steady after it.
+/// Duration of a step after which the flow is steady, s.
 const LONG_S: f64 = 1e6;
 
-/// Velocities along x of a channel of so many cells, pulled by an acceleration of 1, from the lower wall on.
+/// Velocities along x of a channel of `cells` cells, under an acceleration of 1, from the lower wall on.
 fn channel(cells: usize, scheme: Scheme, paint: Paint, steps: usize) -> Vec<f64> {
     let grid = Grid {
         cells: [4, cells, 4],
@@ -101,8 +101,8 @@ fn a_film_is_exact_wherever_its_surface_lies_in_a_cell() {
     }
 }
 
-/// A canvas whose height lies anywhere in a cell: the film over it flows as if the grid began there, to half the square of
-/// the distance of the lowest velocity.
+/// A canvas whose height is anywhere in a cell: the film over it flows as if the grid began there, to half the square
+/// of the distance of the lowest velocity.
 #[test]
 fn a_film_knows_where_in_a_cell_its_canvas_lies() {
     let ends = Ends::Sides([Side::NoSlip, Side::Slip]);
@@ -210,7 +210,7 @@ fn a_plate_drags_paint_as_stokes_has_it() {
     }
 }
 
-/// A Bingham fluid in a channel: a plug of width 2τ_y/G moves at G(a − τ_y/G)²/2μ, a half the width.
+/// A Bingham fluid in a channel: a plug of width 2τ_y/G moves at G(a − τ_y/G)²/2μ, with a half the width.
 #[test]
 fn a_plug_moves_as_bingham_has_it() {
     let cells = 64;

@@ -21,7 +21,7 @@ fn the_residual_falls_tenfold_every_two_iterations_on_every_grid() {
     }
 }
 
-/// Rounds of f32 bring the residual in f64 down to 1e-8, which one alone does not.
+/// Rounds of f32 bring the residual in f64 down to 1e-8, which one round does not.
 #[test]
 fn rounds_reach_what_single_precision_does_not() {
     let (grid, stencil, b) = pool(32, Pool::Rough);

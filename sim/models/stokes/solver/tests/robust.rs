@@ -1,4 +1,4 @@
-//! Paint of any viscosity, steps of any length and a brush that does anything: all stays finite, and nothing is lost.
+//! Paint of any viscosity, steps of any length and any motion of the brush: all stays finite, and nothing is lost.
 
 use maulstick_num::fork_join::with_threads;
 use maulstick_stokes::body::{Rod, voxelise};
@@ -72,7 +72,7 @@ fn whatever_the_brush_does_all_is_finite_and_counted() {
     }
 }
 
-/// What goes into a cell leaves it, to 1e-5 of the brush's speed.
+/// The outflow of a cell equals its inflow, to 1e-5 of the brush's speed.
 #[test]
 fn the_velocity_is_free_of_divergence() {
     let grid = Grid::walled([24, 16, 12]);

@@ -1,4 +1,4 @@
-//! Paint that flows: nothing is lost, and its surface stays where it is.
+//! Transport of paint: nothing is lost, and its surface keeps its place.
 
 mod common;
 
@@ -36,7 +36,7 @@ fn a_ball_that_is_carried_round_keeps_its_shape_and_its_count() {
     let open = vec![1.0; grid.len()];
     let solids = Solids::walls(&grid);
     let velocity = [1.0, 1.0, 0.5].map(|u| vec![u; grid.len()]);
-    // All is paint, as far as velocities go.
+    // All cells are paint for the velocities.
     let domain = Domain::new(&grid, &open, &solids, 0.1);
     for _ in 0..48 {
         volume.advect(&domain, &open, &velocity, 1.0, 1.0);
@@ -53,7 +53,7 @@ fn a_ball_that_is_carried_round_keeps_its_shape_and_its_count() {
     assert!(off / all < 0.25, "{}", off / all);
 }
 
-/// A pool with a ball that goes round in it for 10,000 steps.
+/// A pool with a ball that circles in it for 10,000 steps.
 #[test]
 fn no_quantum_is_missing_after_ten_thousand_steps() {
     let grid = Grid {

@@ -1,4 +1,4 @@
-//! The flow around a brush of the paint model `stokes`, found on the device window by window.
+//! The flow around a brush of the paint model `stokes`, computed on the device window by window.
 
 use crate::coarse::FlowWindow;
 use crate::flow_backend::{FlowBackend, FlowError};
@@ -9,12 +9,12 @@ use maulstick_stokes::grid::Grid;
 use super::{GpuFlow, Tuning};
 use maulstick_gpu::device::{Choice, Device, GpuError};
 
-/// Cells with paint, and the air above them, from which on a device is given a window where the processor may have it. On one
-/// core of a Xeon 32×32×16 cells take 6 to 9 ms and others by their number; on an H200 its dispatches take 3 ms whatever the
-/// window, up to 64×64×32.
+/// Number of cells with paint, and air above them, from which a device is used where the processor may be. On one core
+/// of a Xeon 32×32×16 cells take 6 to 9 ms, and others in proportion; on an H200 the dispatches take 3 ms for any
+/// window up to 64×64×32.
 const FEWEST_CELLS: usize = 16_384;
 
-/// The flow of windows of any size, one after the other, in the same memory.
+/// The flow of successive windows of any size, in the same memory.
 #[derive(Debug)]
 pub struct GpuBrushFlow {
     flow: GpuFlow,
@@ -24,18 +24,16 @@ pub struct GpuBrushFlow {
 }
 
 impl GpuBrushFlow {
-    /// On a device: of wide windows, or of all where the device must be used.
+    /// A backend on a device: for large windows, or for all where the device must be used.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn new(gpu: Device, choice: Choice) -> Result<Self, GpuError> {
         Self::tuned(gpu, choice, &Tuning::default())
     }
 
-    /// The same, tuned to the device.
+    /// A backend with a tuning for the device.
     ///
-    /// # Errors
-    /// As [`GpuBrushFlow::new`].
+    /// # Errors As [`GpuBrushFlow::new`].
     pub fn tuned(gpu: Device, choice: Choice, tuning: &Tuning) -> Result<Self, GpuError> {
         let adapter = gpu.name().to_owned();
         let fewest_cells = match choice {
@@ -70,7 +68,7 @@ impl GpuBrushFlow {
     }
 }
 
-/// The layers that are solved: those of the processor.
+/// The solved layers, equal to the processor's.
 fn solved(window: &FlowWindow<'_>) -> Grid {
     layers_with_paint(window.grid, window.fill, LEAST_FILL)
 }

@@ -18,7 +18,7 @@ pub(crate) struct WindowBuffers {
 }
 
 impl WindowBuffers {
-    /// Buffers for fields of so many bytes and so many dispatches.
+    /// Buffers for fields of `bytes` and for `dispatches` records.
     pub(crate) fn new(gpu: &Device, pipelines: &Pipelines, bytes: u64, dispatches: usize) -> Self {
         let buffer = |label, size, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -61,7 +61,7 @@ impl WindowBuffers {
         }
     }
 
-    /// True if fields of so many bytes and so many dispatches fit.
+    /// True if fields of `bytes` and `dispatches` records fit.
     pub(crate) fn holds(&self, bytes: u64, dispatches: usize) -> bool {
         bytes <= self.fields.size() && CALL_STRIDE * dispatches as u64 <= self.calls.size()
     }

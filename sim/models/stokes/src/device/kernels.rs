@@ -5,12 +5,12 @@ use maulstick_gpu::device::Device;
 
 use super::record::{CALL_BYTES, WINDOW_BYTES};
 
-/// What a stage is.
+/// Definition of a stage.
 pub(crate) struct Kernel {
-    /// Its entry point.
+    /// Name of the entry point.
     pub(crate) name: &'static str,
     source: &'static str,
-    /// Numbers that it reads or writes by place, each counted once; beside those of earlier directions.
+    /// Number of values read or written per place, each counted once, without those of earlier directions.
     pub(crate) words: u64,
 }
 
@@ -22,7 +22,7 @@ macro_rules! stages {
             $($stage,)*
         }
 
-        /// What they are, in their order.
+        /// Definitions of the stages, in order.
         pub(crate) static KERNELS: &[Kernel] = &[$(
             Kernel {
                 name: $name,
@@ -84,7 +84,7 @@ stages! {
     SettleDrops: "settle_drops" of "carry_paint", 6;
 }
 
-/// A constant of the shaders with another value: the fault that a test seeds.
+/// A constant of the shaders with another value: the seeded fault of a test.
 pub type Fault = Option<(&'static str, f64)>;
 
 /// The stages on a device.
@@ -95,7 +95,7 @@ pub(crate) struct Pipelines {
 }
 
 impl Pipelines {
-    /// Makes them.
+    /// Compiles the pipelines.
     pub(crate) fn new(gpu: &Device, fault: Fault) -> Self {
         let entry = |binding, ty, bytes| wgpu::BindGroupLayoutEntry {
             binding,
@@ -164,7 +164,7 @@ fn pipeline(
             entry_point: Some(kernel.name),
             compilation_options: wgpu::PipelineCompilationOptions {
                 constants: &constants,
-                // Each sum writes what it adds up.
+                // Each sum writes all values that it adds.
                 zero_initialize_workgroup_memory: false,
             },
             cache: None,

@@ -1,4 +1,4 @@
-//! Steps beside a plain copy of as many bytes: for who plans for a card.
+//! Duration of steps compared with that of copying the same bytes, for comparing graphics cards.
 
 use std::time::{Duration, Instant};
 
@@ -8,14 +8,13 @@ use wgpu::BufferUsages as Usage;
 use super::GpuFlow;
 use maulstick_gpu::device::GpuError;
 
-/// Steps that are given to the device before it is waited for.
+/// Number of steps submitted together.
 const TOGETHER: usize = 8;
 
 impl GpuFlow {
-    /// Time of so many steps of what is on the device, with what the processor does to give them to it.
+    /// Duration of `count` steps on the device, including their submission by the processor.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn time_steps(
         &mut self,
         conditions: &Conditions,
@@ -33,14 +32,13 @@ impl GpuFlow {
         Ok(begun.elapsed())
     }
 
-    /// Time of copies that read and write as many bytes together as the stages of so many steps do.
+    /// Duration of copies that read and write as many bytes as the stages of `count` steps.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn time_copies(&self, count: usize) -> Result<Duration, GpuError> {
         let gpu = &self.gpu;
         gpu.guarded(|| {
-            // What is copied is a whole number of words.
+            // Copies have a whole number of words.
             let piece = self.buffers.fields.size() / 16 * 4;
             let spare = gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("stokes copy"),

@@ -1,24 +1,24 @@
 //! Stokes Paint on the device: the solver of `maulstick-stokes` and its transport in WGSL, stage by stage.
 //!
-//! Domain, rheology, operator, the hierarchies of multigrid, generalised conjugate residuals and the conjugate gradients that
-//! end a step all run on the device; scalar products are summed there, and what is found of them stays there. A step is always
-//! the same list of dispatches, and nothing is read back in it. The algorithm is the processor's: its smoother, a Chebyshev
-//! polynomial of damped Jacobi steps, is symmetric and has no order of places, so both have the same one. Sums are of f32
-//! in another order, so velocities agree to rounding and not bit by bit.
+//! Domain, rheology, operator, the hierarchies of multigrid, generalised conjugate residuals and the conjugate
+//! gradients that end a step all run on the device; scalar products are summed and used there. A step is always the
+//! same list of dispatches, without a read-back. The algorithm is the processor's: its smoother, a Chebyshev polynomial
+//! of damped Jacobi steps, is symmetric and independent of the order of places. Sums are of f32 in another order, so
+//! velocities agree to rounding and not bit by bit.
 //!
-//! Counts of paints are whole numbers below 2²⁴, which f32 holds exactly: what goes through a face one cell loses and the other
-//! gains. The number of [parts](Paints) of a step is the caller's, who knows how fast the brush is; paint that is faster goes half
-//! a cell in each. The solids' distances and velocities come from the processor.
+//! Counts of paints are whole numbers below 2²⁴, which f32 holds exactly: one cell loses and the other gains the flux
+//! through a face. The caller sets the number of [parts](Paints) of a step by the speed of the brush; faster paint
+//! moves half a cell in each. The solids' distances and velocities come from the processor.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | `plan` | where the fields lie |
-//! | `record` | a step and a call as the shaders take them |
+//! | `plan` | layout of the fields |
+//! | `record` | a step and a call in the layout of the shaders |
 //! | `buffers` | the buffers of a window |
 //! | `kernels` | the stages, and their pipelines |
 //! | `schedule` | the dispatches of a step |
 //! | `brush_flow` | the flow around a brush of the paint model `stokes` |
-//! | `measure` | steps beside a copy, for the benchmark |
+//! | `measure` | steps compared with a copy, for the benchmark |
 
 mod brush_flow;
 mod buffers;
@@ -55,7 +55,7 @@ const X: u32 = 44;
 /// Scalars of window.wgsl.
 const NORMS: u32 = 80;
 const PRESSURE_NORMS: u32 = 704;
-/// Iterations whose norms there is room for.
+/// Greatest number of iterations with recorded norms.
 const MOST_STEPS: usize = 38;
 
 /// The paint model with its flow on a device, for the registry.
@@ -76,26 +76,26 @@ pub struct GpuFlow {
     pipelines: Pipelines,
     plan: Plan,
     dispatches: Vec<Dispatch>,
-    /// Bytes that the stages of a step go over.
+    /// Bytes that the stages of a step read and write.
     bytes: u64,
     buffers: WindowBuffers,
     back: Arena,
-    /// Number of the next order of axes.
+    /// Index of the next order of axes.
     turn: usize,
-    /// Part of what a cell has too much or lacks that leaves or enters it in a step.
+    /// Share of a cell's excess or deficit of volume that is corrected in a step.
     pub relief: f32,
 }
 
-/// How the stages are laid out on a device; the flow is the same.
+/// Tuning of the stages on a device, without effect on the flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
-    /// Cells of a level from which down one workgroup does all levels.
+    /// Number of cells of a level at and below which one workgroup does all levels.
     pub rest: u32,
-    /// Paint that is carried.
+    /// Paint to be transported.
     pub paints: Paints,
-    /// Bytes of a window at most, where the device gives more in one piece.
+    /// Greatest size of a window, bytes, where the device allows more in one piece.
     pub most_bytes: u64,
-    /// A constant of the shaders with another value: the fault that a comparison must find.
+    /// A constant of the shaders with another value: the seeded fault of a comparison.
     #[doc(hidden)]
     pub fault: Fault,
 }
@@ -111,20 +111,20 @@ impl Default for Tuning {
     }
 }
 
-/// What a flow is after a step, on the grid's places as `maulstick_stokes::flow::Flow` has it.
+/// State of a flow after a step, in the layout of `maulstick_stokes::flow::Flow`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlowState {
     /// Velocity on the lower faces of each axis, m/s.
     pub velocity: [Vec<f32>; 3],
     /// Pressure by density in each cell, m²/s².
     pub pressure: Vec<f32>,
-    /// Norms of the residual in the last step, with that of the first guess.
+    /// Norms of the residual in the last step, the first guess's included.
     pub norms: Vec<f32>,
-    /// Norms of the volume that was lacking, before and after each conjugate gradient.
+    /// Norms of the volume deficit, before and after each conjugate gradient.
     pub lacking: Vec<f32>,
 }
 
-/// Layout of a window, the dispatches of a step and the bytes that they go over.
+/// Layout of a window, the dispatches of a step and their bytes.
 fn laid_out(
     grid: &Grid,
     effort: Effort,
@@ -139,18 +139,16 @@ fn laid_out(
 }
 
 impl GpuFlow {
-    /// Paint at rest in a window, to be moved with so many iterations a step.
+    /// Paint at rest in a window, with the iterations of a step in `effort`.
     ///
-    /// # Errors
-    /// [`GpuError::Window`] where the window is too large for the device; another [`GpuError`] of the device.
+    /// # Errors [`GpuError::Window`] where the window is too large for the device; another [`GpuError`] of the device.
     pub fn new(gpu: Device, grid: &Grid, effort: Effort) -> Result<Self, GpuError> {
         Self::tuned(gpu, grid, effort, &Tuning::default())
     }
 
-    /// The same, tuned to the device.
+    /// A flow with a tuning for the device.
     ///
-    /// # Errors
-    /// As [`GpuFlow::new`].
+    /// # Errors As [`GpuFlow::new`].
     pub fn tuned(
         gpu: Device,
         grid: &Grid,
@@ -190,11 +188,10 @@ impl GpuFlow {
         })
     }
 
-    /// Paint at rest, and none to be carried, in a window of another grid; its memory grows as it must.
+    /// Restarts at rest, without paint to transport, in a window of another grid; memory grows as needed.
     ///
-    /// # Errors
-    /// [`GpuError::Window`] where the device has no room for the window: it stays what it was. Another [`GpuError`] of the
-    /// device.
+    /// # Errors [`GpuError::Window`] where the window does not fit: the flow is then unchanged. Another [`GpuError`] of
+    /// the device.
     pub fn restart(&mut self, grid: &Grid) -> Result<(), GpuError> {
         let gpu = self.gpu.clone();
         if self.plan.grid != *grid {
@@ -210,7 +207,7 @@ impl GpuFlow {
         }
         self.turn = 0;
         gpu.guarded(|| {
-            // What lies beyond walls nobody writes, and it must be 0.
+            // No stage writes the values beyond walls, which must be 0.
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             encoder.clear_buffer(&self.buffers.fields, 0, Some(self.plan.bytes()));
             gpu.queue.submit([encoder.finish()]);
@@ -218,11 +215,12 @@ impl GpuFlow {
         })
     }
 
-    /// Makes room for a window, and for some that are larger. Where there is none, as large ones are refused from then on.
+    /// Allocates memory for a window, and for somewhat larger ones. If that fails, windows of that size are refused
+    /// from then on.
     fn grow(&mut self, plan: &Plan, dispatches: usize) -> Result<(), GpuError> {
         let gpu = self.gpu.clone();
         let wanted = plan.bytes().max(self.buffers.fields.size());
-        // A binding is of whole numbers.
+        // A binding has a whole number of vectors.
         let wanted = wanted.next_power_of_two().min(self.tuning.most_bytes) / 4 * 4;
         let dispatches = dispatches.next_power_of_two();
         match gpu.guarded(|| {
@@ -243,19 +241,17 @@ impl GpuFlow {
         Ok(())
     }
 
-    /// Bytes that a window of a grid takes on a device, for so many iterations a step.
+    /// Memory of a window of a grid on a device, bytes, for the iterations of a step in `effort`.
     ///
-    /// # Errors
-    /// [`GpuError::Window`] where no device's indices reach so far.
+    /// # Errors [`GpuError::Window`] where no device's indices suffice.
     pub fn window_bytes(grid: &Grid, effort: Effort) -> Result<u64, GpuError> {
         Plan::new(grid, effort.steps.min(MOST_STEPS), 0, Paints::default()).map(|plan| plan.bytes())
     }
 
-    /// Dispatches of a step in a window of a grid, and bytes that its stages go over: each field that a stage reads or writes
-    /// once. A device's caches spare some of it.
+    /// Dispatches of a step in a window of a grid, and bytes of its stages: each field that a stage reads or writes
+    /// once. A device's caches reduce them.
     ///
-    /// # Errors
-    /// [`GpuError::Window`] where no device's indices reach so far.
+    /// # Errors [`GpuError::Window`] where no device's indices suffice.
     pub fn traffic(grid: &Grid, effort: Effort, tuning: &Tuning) -> Result<[u64; 2], GpuError> {
         let plan = Plan::new(
             grid,
@@ -267,10 +263,9 @@ impl GpuFlow {
         Ok([schedule.dispatches.len() as u64, schedule.bytes])
     }
 
-    /// Gives paint a velocity and a pressure.
+    /// Writes a velocity and a pressure.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn write(&self, velocity: &[Vec<f32>; 3], pressure: &[f32]) -> Result<(), GpuError> {
         let [u, v, w] = velocity;
         self.gpu.guarded(|| {
@@ -298,11 +293,10 @@ impl GpuFlow {
         }
     }
 
-    /// One step with cells filled to a fraction, between solids, under conditions: as `Flow::step` of the processor. Fields
-    /// are the grid's; nothing is waited for.
+    /// One step with cells filled to a fraction, between solids, under conditions, like `Flow::step` of the processor.
+    /// Fields are the grid's; it does not wait.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn step(
         &mut self,
         fill: &[f32],
@@ -324,10 +318,9 @@ impl GpuFlow {
         })
     }
 
-    /// One step of what is on the device already.
+    /// One step of the state on the device.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn step_again(&mut self, conditions: &Conditions) -> Result<(), GpuError> {
         let gpu = self.gpu.clone();
         gpu.guarded(|| {
@@ -336,10 +329,9 @@ impl GpuFlow {
         })
     }
 
-    /// Gives the window paint: quanta of each by cell.
+    /// Writes paint: quanta of each by cell.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn write_paints(&self, paints: &[Vec<u32>]) -> Result<(), GpuError> {
         self.gpu.guarded(|| {
             for (number, counts) in paints.iter().take(self.plan.paints.count).enumerate() {
@@ -350,10 +342,10 @@ impl GpuFlow {
         })
     }
 
-    /// Waits for the device, and reads the quanta of each paint by cell. Beyond periodic sides are those of the opposite cells.
+    /// Waits for the device, and reads the quanta of each paint by cell. Values beyond periodic sides are those of the
+    /// opposite cells.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn read_paints(&mut self) -> Result<Vec<Vec<u32>>, GpuError> {
         let len = self.plan.grid.len();
         let count = self.plan.paints.count;
@@ -391,10 +383,9 @@ impl GpuFlow {
         self.gpu.queue.submit([encoder.finish()]);
     }
 
-    /// Waits for the device, and reads what the flow is.
+    /// Waits for the device, and reads the state of the flow.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn read(&mut self) -> Result<FlowState, GpuError> {
         let len = self.plan.grid.len();
         let offset = |word: u32| 4 * u64::from(word);
@@ -421,15 +412,14 @@ impl GpuFlow {
 
     /// Waits for the device, and reads the velocity alone, axis after axis, on the grid's places.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn read_velocity(&mut self) -> Result<Vec<f32>, GpuError> {
         let bytes = 4 * self.plan.grid.len() as u64;
         let from = 4 * u64::from(self.plan.field(X));
         self.read_words(&[(from, 3 * bytes)])
     }
 
-    /// Reads parts of the fields, one after the other: from where, how many bytes.
+    /// Reads concatenated parts of the fields: offset and number of bytes.
     fn read_words(&mut self, ranges: &[(u64, u64)]) -> Result<Vec<f32>, GpuError> {
         let Self {
             gpu, back, buffers, ..
@@ -448,10 +438,9 @@ impl GpuFlow {
         })
     }
 
-    /// Waits until the device has done all steps.
+    /// Waits until the device has finished all steps.
     ///
-    /// # Errors
-    /// A [`GpuError`] of the device.
+    /// # Errors A [`GpuError`] of the device.
     pub fn wait(&self) -> Result<(), GpuError> {
         self.gpu.wait()
     }

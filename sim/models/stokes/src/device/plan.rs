@@ -1,26 +1,26 @@
-//! Where the fields of a window lie in the device's memory: `common/window.wgsl` has the same numbers.
+//! Layout of a window's fields in the device's memory, with the same numbers as `common/window.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 use maulstick_stokes::grid::{Ends, Grid, Side};
 
 use maulstick_gpu::device::GpuError;
 
-/// Levels of a hierarchy at most.
+/// Greatest number of levels of a hierarchy.
 pub(crate) const MOST_LEVELS: usize = 12;
-/// Fields of the finest grid before the directions.
+/// Number of fields of the finest grid before the directions.
 pub(crate) const DIRECTIONS: u32 = 56;
-/// Directions at most: as many squares and answers are kept.
+/// Greatest number of directions, and of their stored squares and answers.
 pub(crate) const MOST_DIRECTIONS: usize = 24;
-/// Fields of a component on the finest level and on the others.
+/// Number of fields of a component on the finest level and on the others.
 const OF_COMPONENT: [u64; 2] = [9, 11];
-/// Parts of a step of transport at most.
+/// Greatest number of parts of a step of transport.
 const MOST_PARTS: usize = 40;
-/// Numbers that a workgroup of the sums goes over.
+/// Number of values summed by a workgroup.
 pub(crate) const SUMMED: u32 = 2048;
-/// Rows of partial sums, and scalars.
+/// Number of rows of partial sums, and of scalars.
 const ROWS: u64 = 32;
 const SCALARS: u64 = 768;
-/// Cells of an axis of the coarsest grid at most, if it can be halved so far.
+/// Greatest number of cells along an axis of the coarsest grid, if it can be halved down to that.
 const COARSEST_CELLS: usize = 4;
 
 /// `Level` of window.wgsl.
@@ -33,14 +33,14 @@ pub(crate) struct Level {
     base: u32,
 }
 
-/// Paint that a window carries.
+/// Paint transported in a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Paints {
-    /// How many paints.
+    /// Number of paints.
     pub count: usize,
     /// Quanta that fill a cell; below 2²².
     pub capacity: u32,
-    /// Parts of a step: in each, paint goes half a cell at most.
+    /// Number of parts of a step; in each, paint moves by at most half a cell.
     pub parts: usize,
 }
 
@@ -59,18 +59,18 @@ impl Default for Paints {
 pub(crate) struct Plan {
     pub(crate) grid: Grid,
     pub(crate) levels: Vec<Level>,
-    /// First level that one workgroup does with all that are coarser.
+    /// First level of those that one workgroup does together.
     pub(crate) rest: usize,
-    /// Directions that there is room for.
+    /// Number of directions that fit.
     pub(crate) memory: usize,
     pub(crate) paints: Paints,
     pub(crate) partials: u32,
     pub(crate) scalars: u32,
-    /// Numbers of all.
+    /// Size of all fields, words.
     pub(crate) words: u64,
 }
 
-/// A grid half as fine along each axis that can be halved, and which those are.
+/// A grid half as fine along each axis that can be halved, and a mask of those axes.
 fn halved(grid: &Grid) -> (Grid, [u32; 3]) {
     let can = [0, 1, 2].map(|axis| {
         let cells = grid.cells[axis];
@@ -83,7 +83,7 @@ fn halved(grid: &Grid) -> (Grid, [u32; 3]) {
     (coarse, can.map(u32::from))
 }
 
-/// Sides as window.wgsl numbers them, of the lower and the upper ends.
+/// Conditions of the lower and the upper sides, by window.wgsl's numbers.
 pub(crate) fn sides(grid: &Grid) -> [[u32; 3]; 2] {
     let number = |side: Side| match side {
         Side::NoSlip => 0,
@@ -122,10 +122,9 @@ fn levels(finest: &Grid, words: &mut u64) -> Option<Vec<Level>> {
 }
 
 impl Plan {
-    /// The layout for so many directions; one workgroup does all levels of so many cells and fewer.
+    /// The layout for `memory` directions; one workgroup does all levels of at most `rest` cells.
     ///
-    /// # Errors
-    /// [`GpuError::Window`] of a window without cells or of more than the shaders' indices reach.
+    /// # Errors [`GpuError::Window`] for a window without cells or beyond the range of the shaders' indices.
     pub(crate) fn new(
         grid: &Grid,
         memory: usize,
@@ -143,7 +142,7 @@ impl Plan {
             parts: paints.parts.clamp(1, MOST_PARTS),
             ..paints
         };
-        // Fields of directions are also room for counts.
+        // Fields of directions also hold counts.
         let memory = memory
             .max(paints.count.div_ceil(8))
             .clamp(1, MOST_DIRECTIONS);
@@ -182,15 +181,14 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Bytes of the window.
+    /// Size of the window, bytes.
     pub(crate) const fn bytes(&self) -> u64 {
         4 * self.words
     }
 
-    /// Says no to a window of more than so many bytes.
+    /// Checks that the window has at most `most` bytes.
     ///
-    /// # Errors
-    /// [`GpuError::Window`].
+    /// # Errors [`GpuError::Window`].
     pub(crate) const fn check(&self, most: u64) -> Result<(), GpuError> {
         if self.bytes() <= most {
             return Ok(());
@@ -202,7 +200,7 @@ impl Plan {
         })
     }
 
-    /// Places of a level that invocations of most stages have: its cells, with what lies beyond periodic sides.
+    /// Number of invocations of most stages on a level: its cells, and the copies beyond periodic sides.
     pub(crate) fn inner(&self, level: usize) -> u32 {
         let beyond = [0, 1, 2].map(|axis| if self.grid.is_periodic(axis) { 3 } else { 0 });
         let cells = self.levels[level].cells;
@@ -214,7 +212,7 @@ impl Plan {
         DIRECTIONS + 8 * self.memory as u32 + 1 + paint as u32
     }
 
-    /// Where a field of the finest grid begins.
+    /// Offset of a field of the finest grid.
     pub(crate) fn field(&self, number: u32) -> u32 {
         number * self.levels[0].len
     }

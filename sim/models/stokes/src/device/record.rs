@@ -1,4 +1,4 @@
-//! A step and a call as the shaders take them.
+//! A step and a call in the layout of the shaders.
 
 use bytemuck::{Pod, Zeroable};
 use maulstick_stokes::domain::LEAST_FILL;
@@ -8,11 +8,11 @@ use maulstick_stokes::unified::weights;
 
 use super::plan::{Level, MOST_LEVELS, Plan, sides};
 
-/// Bytes of a call, and from one to the next.
+/// Size of a call, bytes.
 pub(crate) const CALL_BYTES: u64 = size_of::<Call>() as u64;
-/// What every device aligns uniforms to.
+/// Alignment of uniforms on every device, bytes.
 pub(crate) const CALL_STRIDE: u64 = 256;
-/// Bytes of a step.
+/// Size of a step, bytes.
 pub(crate) const WINDOW_BYTES: u64 = size_of::<WindowRecord>() as u64;
 
 /// `Call` of window.wgsl.
@@ -61,7 +61,7 @@ pub(crate) struct WindowRecord {
 }
 
 impl WindowRecord {
-    /// A step under conditions; a part of what cells have too much of leaves them; bristles resist or do not.
+    /// A step under conditions; `relief` is the corrected share of an excess of volume; `resists` is set with bristles.
     pub(crate) fn new(
         plan: &Plan,
         conditions: &Conditions,

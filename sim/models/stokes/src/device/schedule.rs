@@ -1,5 +1,4 @@
-//! The dispatches of a step: always the same ones, whatever the paint does. The algorithm is that of `unified.rs` of
-//! maulstick-stokes.
+//! The dispatches of a step, independent of the paint. The algorithm is that of `unified.rs` of maulstick-stokes.
 
 use maulstick_stokes::flow::Effort;
 
@@ -7,9 +6,9 @@ use super::kernels::{KERNELS, Stage};
 use super::plan::{DIRECTIONS, Plan, SUMMED};
 use super::record::Call;
 
-/// Invocations of a workgroup.
+/// Number of invocations of a workgroup.
 const GROUP: u32 = 256;
-/// Workgroups of a row of workgroups.
+/// Number of workgroups in a row.
 const ROW: u32 = 32_768;
 /// Fields of window.wgsl.
 const LACKING: u32 = 42;
@@ -26,7 +25,7 @@ pub(crate) struct Dispatch {
     pub(crate) call: Call,
 }
 
-/// What sums are for, as add_up.wgsl numbers it.
+/// Purpose of a sum, by add_up.wgsl's numbers.
 #[derive(Clone, Copy, Debug)]
 enum Wanted {
     Thickness,
@@ -40,7 +39,7 @@ enum Wanted {
     LastAnswer,
 }
 
-/// The dispatches of a step in their order, and the bytes that they go over.
+/// The dispatches of a step in order, and their bytes.
 #[derive(Debug)]
 pub(crate) struct Schedule<'a> {
     plan: &'a Plan,
@@ -49,7 +48,7 @@ pub(crate) struct Schedule<'a> {
 }
 
 impl<'a> Schedule<'a> {
-    /// A step.
+    /// The dispatches of a step.
     pub(crate) fn new(plan: &'a Plan, effort: Effort) -> Self {
         let mut schedule = Self {
             plan,
@@ -119,7 +118,7 @@ impl<'a> Schedule<'a> {
         self.each(Stage::FindRight, 4, plain);
     }
 
-    /// Velocity and pressure at once.
+    /// Solves for velocity and pressure.
     fn solve(&mut self, steps: usize) {
         let [x, r] = [X, R].map(|number| self.plan.field(number));
         let call = Call {
@@ -139,7 +138,7 @@ impl<'a> Schedule<'a> {
             let some = (steps - done).min(self.plan.memory);
             for number in 0..some {
                 self.precondition(number, r);
-                self.turn(number, done + number);
+                self.add_direction(number, done + number);
             }
             done += some;
             self.end_directions(some, done);
@@ -174,8 +173,8 @@ impl<'a> Schedule<'a> {
         self.each(Stage::ApplyOperator, 4, call);
     }
 
-    /// Takes up a direction, the `done`th of the step.
-    fn turn(&mut self, number: usize, done: usize) {
+    /// Adds a direction, the `done`th of the step.
+    fn add_direction(&mut self, number: usize, done: usize) {
         let before = number as u64;
         let call = Call {
             number: number as u32,
@@ -189,7 +188,8 @@ impl<'a> Schedule<'a> {
         self.summed(Stage::TakeShares, 4, before, call);
         self.add_up(Wanted::Answer, self.summing(4, call));
         if number > 0 {
-            // The second round does nothing where the first one has left enough of the image; it counts as nothing.
+            // The second round returns at once unless cancellation has made the first inexact; its bytes are not
+            // counted.
             let again = Call { mode: 1, ..call };
             let bytes = self.bytes;
             self.summed(Stage::MultiplyImages, 4, before, again);
@@ -213,7 +213,7 @@ impl<'a> Schedule<'a> {
         self.bytes += 4 * places;
     }
 
-    /// Takes the divergence out of the velocity.
+    /// Removes the divergence of the velocity.
     fn project(&mut self, iterations: usize) {
         if iterations == 0 {
             return;
@@ -247,7 +247,7 @@ impl<'a> Schedule<'a> {
         self.each(Stage::CorrectFlow, 4, plain);
     }
 
-    /// Carries paint along one axis after the other, then lets drops sink.
+    /// Transports paint along one axis after the other, then lets drops sink.
     fn carry(&mut self) {
         let paints = self.plan.paints.count as u32;
         let take = |is_new: u32, begins: u32| Call {
@@ -275,7 +275,7 @@ impl<'a> Schedule<'a> {
         self.each(Stage::TakeCounts, 1, take(1, 1));
     }
 
-    /// A V-cycle of so many components from the first on.
+    /// A V-cycle of `components` components from `first` on.
     fn cycle(&mut self, [first, components]: [u32; 2], source: u32, into: u32) {
         let rest = self.plan.rest;
         let at = |level: usize, mode| Call {
@@ -300,7 +300,7 @@ impl<'a> Schedule<'a> {
         }
     }
 
-    /// A stage on each place of the finest grid's cells.
+    /// Adds a stage on each place of the finest grid's cells.
     fn each(&mut self, stage: Stage, fields: u32, call: Call) {
         self.inner(0, stage, fields, call);
     }
@@ -309,7 +309,7 @@ impl<'a> Schedule<'a> {
         self.over(self.plan.inner(level), stage, fields, call);
     }
 
-    /// A stage on every place of a level's fields.
+    /// Adds a stage on every place of a level's fields.
     fn all(&mut self, level: usize, stage: Stage, fields: u32, call: Call) {
         self.over(self.plan.levels[level].len, stage, fields, call);
     }
@@ -321,13 +321,13 @@ impl<'a> Schedule<'a> {
         self.dispatch(stage, size, call, u64::from(places) * u64::from(fields));
     }
 
-    /// The call of a stage with sums over so many components.
+    /// The call of a stage with sums over several components.
     fn summing(&self, components: u32, call: Call) -> Call {
         let groups = (components * self.plan.inner(0)).div_ceil(SUMMED);
         Call { groups, ..call }
     }
 
-    /// A stage with sums; beside its own fields it goes over so many of earlier directions.
+    /// Adds a stage with sums; besides its own fields it reads `others` fields of earlier directions.
     fn summed(&mut self, stage: Stage, components: u32, others: u64, call: Call) {
         let call = self.summing(components, call);
         let places = u64::from(components * self.plan.inner(0));

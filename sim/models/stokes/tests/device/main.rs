@@ -1,5 +1,5 @@
-//! The paint model `stokes` with its flow on the device: windows of any size, whole strokes beside those of the processor, too
-//! little memory, a device that is lost.
+//! The paint model `stokes` with its flow on the device: windows of any size, whole strokes compared with the
+//! processor's, too little memory, a lost device.
 
 #[path = "../../../../gpu/tests/steps/easel.rs"]
 mod easel;
@@ -10,7 +10,7 @@ mod windows;
 
 use maulstick_gpu::{Choice, Device};
 
-/// An adapter: where there is no other, lavapipe.
+/// An adapter, lavapipe if there is no other.
 fn device() -> Device {
     Device::open(Choice::Forced)
         .expect("a Vulkan driver: install mesa-vulkan-drivers, as ./test does")

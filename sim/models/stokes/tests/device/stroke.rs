@@ -1,4 +1,4 @@
-//! Whole strokes in thick paint: beside those of the processor, in too little memory, and when the device is lost.
+//! Whole strokes in thick paint: compared with the processor's, with too little memory, and after a loss of the device.
 
 use maulstick_gpu::{Choice, Device};
 use maulstick_model::interface::PaintModel;
@@ -16,9 +16,10 @@ use crate::device;
 use crate::easel::{all, apart, easel_of, lifted, mixture, paint, stroke, volume};
 use crate::strokes;
 
-/// Mean and 99th percentile of ΔE00 by which the backends may differ.
+/// Tolerance of the backends' difference: mean and 99th percentile of ΔE00.
 const COLOURS: [f64; 2] = [0.02, 0.3];
-/// Share of the volume by which they may: where rounding decides whether a speck falls, what follows differs.
+/// Tolerance of the backends' difference of volume, as a share: where rounding decides about the fall of a speck, later
+/// steps differ.
 const VOLUME: f64 = 1e-3;
 
 /// A thick wet film, and a loaded brush.
@@ -72,7 +73,7 @@ fn lying(painting: &mut Painting) -> Vec<f32> {
     planes.flatten().collect()
 }
 
-/// Paint that lies elsewhere after a few steps of a stroke than on the processor's painting, by what they have moved there.
+/// Paint at other places after a few steps of a stroke than in the processor's painting, as a share of the moved paint.
 fn elsewhere(gpu: &mut Painting) -> f64 {
     let mut cpu = easel(None);
     let before = lying(&mut cpu);
@@ -89,7 +90,7 @@ fn elsewhere(gpu: &mut Painting) -> f64 {
     sum(&want, &got) / sum(&want, &before)
 }
 
-/// Of the paint that is moved.
+/// Tolerance as a share of the moved paint.
 const ELSEWHERE: f64 = 1e-4;
 
 #[test]
@@ -166,7 +167,7 @@ fn a_lost_device_loses_no_paint() {
     strokes::outlive_their_device(&easel, &agree, 15);
 }
 
-/// Two strokes in a window's memory of so many bytes: what was decided, the backend, and the painting.
+/// Two strokes with `most_bytes` of memory for a window: the decisions, the backend, and the painting.
 fn limited(most_bytes: u64) -> (Vec<Decision>, Painting) {
     let tuning = Tuning {
         most_bytes,
@@ -207,7 +208,7 @@ fn too_little_memory_makes_cells_coarser_and_that_is_said_once() {
     let (off, colours) = apart(&mut whole, &mut coarse, before);
     assert!(off < 0.05 && colours[0] < 1.0, "{off} {colours:?}");
     assert!(all(&mut whole) != all(&mut coarse));
-    // Where not even the coarsest cells have room, the processor goes on.
+    // Where not even the coarsest cells fit, the processor continues.
     let (decided, mut none) = limited(bytes([1; 3]).expect("it has an index"));
     println!("{decided:?}");
     assert_eq!(none.backend(), "cpu");

@@ -1,4 +1,4 @@
-//! Windows one after the other in the same memory.
+//! Successive windows in the same memory.
 
 use maulstick_gpu::Choice;
 use maulstick_num::{cos, sin};
@@ -21,8 +21,8 @@ struct Window {
 }
 
 impl Window {
-    /// So many cells, in which paint with waves lies up to a height over a slope; bristles of a resistance go through its
-    /// middle at a speed, m/s.
+    /// A window of cells in which paint with waves lies up to a height over a slope; bristles of a resistance move
+    /// through its middle at a speed, m/s.
     fn new(cells: [usize; 3], top: f64, (resistance, speed): (f32, f32)) -> Self {
         let grid = Grid::walled(cells);
         let fill = |place: usize| {
@@ -65,7 +65,7 @@ impl Window {
     }
 }
 
-/// Bristles in a brush's way, and one that fills its window.
+/// Resistance and speed of bristles: part of the window, and one that fills its window.
 const BRISTLES: (f32, f32) = (2.0, 0.1);
 
 fn windows() -> Vec<Window> {
@@ -85,7 +85,7 @@ fn backend(tuning: &Tuning) -> GpuBrushFlow {
     GpuBrushFlow::tuned(device(), Choice::Forced, tuning).expect("made")
 }
 
-/// Bit by bit: what a window before has left in the memory is not seen.
+/// Bit by bit: remnants of an earlier window in the memory have no effect.
 #[test]
 fn a_window_has_the_answer_that_it_has_alone() {
     let mut shared = backend(&Tuning::default());
@@ -96,7 +96,7 @@ fn a_window_has_the_answer_that_it_has_alone() {
         assert!(got == *want, "{:?}", window.grid.cells);
         assert!(got.iter().flatten().all(|velocity| velocity.is_finite()));
     }
-    // A flow that is not restarted goes on, and the comparison finds it.
+    // A flow that is not restarted continues, and the comparison detects it.
     let Window {
         grid,
         fill,
@@ -125,7 +125,7 @@ fn off(window: &Window, device: &mut GpuBrushFlow) -> f64 {
     apart.fold(0.0, f64::max) / cpu.fastest()
 }
 
-/// Of the fastest velocity.
+/// Tolerance relative to the fastest velocity.
 const TOLERANCE: f64 = 1e-5;
 
 #[test]
@@ -147,7 +147,7 @@ fn a_window_has_the_processors_velocities() {
     }
 }
 
-/// Air above the paint, as much as there may be.
+/// Any number of layers of air above the paint.
 #[test]
 fn layers_of_air_do_not_matter() {
     let mut device = backend(&Tuning::default());
@@ -167,7 +167,7 @@ fn layers_of_air_do_not_matter() {
 fn a_window_beyond_the_limit_is_refused_and_the_next_one_is_not() {
     let [small, large] =
         [[14, 12, 10], [30, 28, 14]].map(|cells| Window::new(cells, 2.3, BRISTLES));
-    // What it has room for is laid out without the air.
+    // A window that fits is laid out without the air.
     let most_bytes = GpuFlow::window_bytes(&Grid::walled([14, 12, 10]), Effort::default())
         .expect("it has an index");
     let tuning = Tuning {
@@ -210,7 +210,7 @@ fn whatever_the_brush_does_all_is_finite() {
     }
 }
 
-/// On its own a device is given what it does sooner; one that must be used, all.
+/// By default a device is used where it is faster; a forced one always.
 #[test]
 fn small_windows_are_the_processors_unless_it_must_be_the_device() {
     let [auto, forced] = [Choice::Auto, Choice::Forced]

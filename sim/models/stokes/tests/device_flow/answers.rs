@@ -61,7 +61,7 @@ fn flow_of(grid: &Grid, state: &FlowState) -> Flow {
     flow
 }
 
-/// A rod in a pool of so many cells, and how full it is.
+/// A rod in a pool of cells, and their fill.
 fn pool(cells: [usize; 3], x: f32) -> (Grid, Vec<f32>, Solids) {
     let grid = Grid::walled(cells);
     let [_, height, depth] = cells.map(|cells| cells as f32);
@@ -76,7 +76,7 @@ fn pool(cells: [usize; 3], x: f32) -> (Grid, Vec<f32>, Solids) {
     (grid, fill, solids)
 }
 
-/// What goes into a cell leaves it, to 1e-5 of the brush's speed.
+/// The outflow of a cell equals its inflow, to 1e-5 of the brush's speed.
 #[test]
 fn the_velocity_is_free_of_divergence() {
     for viscosity in [1e-6, 1e-2, 1e2] {
@@ -114,7 +114,7 @@ fn the_velocity_is_free_of_divergence() {
     }
 }
 
-/// Volume that is lacking, before and after each of eight conjugate gradients that multigrid preconditions.
+/// Volume deficit, before and after each of eight conjugate gradients with multigrid.
 fn falls(cells: [usize; 3], fault: Option<(&'static str, f64)>) -> Vec<f32> {
     let (grid, fill, solids) = pool(cells, 0.3 * cells[0] as f32);
     let tuning = Tuning {
@@ -182,7 +182,7 @@ fn energy_never_grows_whatever_the_step() {
                 .expect("a step");
             let state = flow.read().expect("read");
             let energy = flow_of(&grid, &state).energy(&domain);
-            // Below that it is rounding.
+            // Below that is rounding.
             assert!(
                 energy <= before * (1.0 + 1e-6) + 1e-12 * first,
                 "τ = {tau}, step {step}: {before:e} to {energy:e}"

@@ -1,4 +1,4 @@
-//! The flow of Stokes Paint on the device beside that of the processor, and beside known answers.
+//! The flow of Stokes Paint on the device compared with the processor's, and with known answers.
 
 #[allow(unreachable_pub, reason = "scenes are what tests share")]
 mod scenes;
@@ -12,7 +12,7 @@ use maulstick_gpu::{Choice, Device};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng as _;
 
-/// An adapter: where there is no other, lavapipe.
+/// An adapter, lavapipe if there is no other.
 fn device() -> Device {
     Device::open(Choice::Forced)
         .expect("a Vulkan driver: install mesa-vulkan-drivers, as ./test does")

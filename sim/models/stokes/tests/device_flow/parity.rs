@@ -1,4 +1,4 @@
-//! The device beside the processor.
+//! The device compared with the processor.
 
 use maulstick_stokes::flow::Effort;
 use maulstick_stokes::rheology::Paint;
@@ -16,8 +16,8 @@ fn scenes() -> [Scene; 4] {
     ]
 }
 
-/// Of the fastest velocity. The processor leaves out layers of air, so its coarse grids are others: both are solved until
-/// what is left is rounding.
+/// Tolerance relative to the fastest velocity. The processor leaves out layers of air, so its coarse grids differ: both
+/// are solved down to rounding.
 const TOLERANCE: f64 = 1e-5;
 const EFFORT: Effort = Effort {
     steps: 20,
@@ -55,7 +55,7 @@ fn the_share_of_one_workgroup_changes_nothing() {
     }
 }
 
-/// A weight in a shader that is wrong by a hundredth.
+/// A seeded fault: a weight in a shader that is wrong by a hundredth.
 #[test]
 fn a_fault_would_be_found() {
     let faults = ["fault_link", "fault_slope"].into_iter().cycle();

@@ -1,4 +1,4 @@
-//! Windows, paints, steps and brushes of any kind.
+//! Arbitrary windows, paints, steps and brushes.
 
 use maulstick_gpu::GpuError;
 use maulstick_stokes::body::{Rod, voxelise};
@@ -11,7 +11,7 @@ use maulstick_stokes_paint::device::GpuFlow;
 use super::device;
 use super::scenes::filled;
 
-/// A brush in the paint, filling the window, gone, leaping, and without numbers.
+/// A brush in the paint, filling the window, absent, leaping, and not finite.
 fn brushes() -> [Rod; 5] {
     let upright = |x: f32, radius: f32, velocity: [[f32; 3]; 2]| Rod {
         ends: [[x, 6.0, 1.5], [x, 6.0, 9.0]],
@@ -63,7 +63,7 @@ fn whatever_the_brush_does_all_is_finite() {
     }
 }
 
-/// A window that no device has room for, or no index reaches, is refused, and says how much it needs.
+/// A window that no device has memory for, or that no index reaches, is refused, with the memory it needs.
 #[test]
 fn a_window_that_does_not_fit_is_refused() {
     let gpu = device();

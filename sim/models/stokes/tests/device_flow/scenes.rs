@@ -1,4 +1,4 @@
-//! Scenes on which the device's flow is held beside the processor's.
+//! Scenes for comparing the device's flow with the processor's.
 
 use maulstick_gpu::{Device, GpuError};
 use maulstick_num::{cos, sin};
@@ -9,7 +9,7 @@ use maulstick_stokes::grid::{Ends, Grid, Side};
 use maulstick_stokes::rheology::Paint;
 use maulstick_stokes_paint::device::{FlowState, GpuFlow, Tuning};
 
-/// A window, its paint, and what moves in it at each of some steps.
+/// A window, its paint, and the solids in it at each step.
 pub struct Scene {
     pub name: &'static str,
     pub grid: Grid,
@@ -68,7 +68,7 @@ pub fn pool(paint: Paint) -> Scene {
         let conditions = Conditions {
             cell_m: 2.5e-4,
             seconds: 0.01,
-            // At rest paint of a yield stress is solid: in the first step it is what moves it.
+            // At rest paint with a yield stress is solid, so the first step needs another one to move.
             paint: if number == 0 {
                 Paint::newtonian(1e-2)
             } else {
@@ -89,7 +89,7 @@ pub fn pool(paint: Paint) -> Scene {
     }
 }
 
-/// Paint that shear makes thinner, with a yield stress.
+/// Shear-thinning paint with a yield stress.
 pub fn thinning() -> Scene {
     let paint = Paint {
         viscosity: 1e-2,
@@ -137,7 +137,8 @@ pub fn bristles() -> Scene {
     }
 }
 
-/// Largest difference of a velocity by the fastest one, and of a pressure by the largest one, after each step.
+/// Largest difference of a velocity relative to the fastest one, and of a pressure relative to the largest one, after
+/// each step.
 pub fn differences(
     gpu: Device,
     scene: &Scene,
@@ -157,14 +158,14 @@ pub fn differences(
     Ok(found)
 }
 
-/// The same of one state.
+/// The differences of one state.
 pub fn off(cpu: &Flow, state: &FlowState) -> [f64; 2] {
     let grid = cpu.grid;
     let mut worst = [0.0f64; 2];
     for axis in 0..3 {
         for face in grid.faces(axis) {
             let difference = cpu.velocity[axis][face] - state.velocity[axis][face];
-            // A number that is none counts as far off.
+            // A difference that is NaN counts as large.
             let difference = f64::from(difference.abs());
             worst[0] = if difference <= worst[0] {
                 worst[0]

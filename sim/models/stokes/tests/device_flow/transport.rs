@@ -1,4 +1,4 @@
-//! Paint that is carried on the device: none is lost, and it lies where the processor's does.
+//! Transport of paint on the device: none is lost, and its places agree with the processor's.
 
 use maulstick_stokes::body::{Rod, voxelise};
 use maulstick_stokes::domain::Solids;
@@ -32,8 +32,7 @@ fn rod(step: usize) -> Rod {
     }
 }
 
-/// Quanta that there are at the end of so many steps less those at the beginning, and the mean difference of the fill from the
-/// processor's in cells that have paint.
+/// Gain of quanta over `steps` steps, and the mean difference of the fill from the processor's in cells with paint.
 fn carried(steps: usize, fault: Option<(&'static str, f64)>) -> (Vec<i64>, f64) {
     let grid = Grid::walled([16, 12, 8]);
     let mut cpu = Stokes::new(&grid, CAPACITY, 2);
@@ -80,8 +79,8 @@ fn carried(steps: usize, fault: Option<(&'static str, f64)>) -> (Vec<i64>, f64) 
     (missing.collect(), off / all)
 }
 
-/// Of all paint, in cells where it does not lie. Where a cell gives more than half or fills up, rounding decides, and what it
-/// decided spreads: the steps are few.
+/// Tolerance as a share of all paint, for paint in other cells. Where a cell gives more than half or fills up, rounding
+/// decides, and its effects spread, so the steps are few.
 const TOLERANCE: f64 = 1e-4;
 
 #[test]

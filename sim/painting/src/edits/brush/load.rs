@@ -12,7 +12,7 @@ use crate::painting::brushes::loads::named;
 
 /// Load a brush with paint
 ///
-/// What it carried goes to the cleaner.
+/// The old load goes to the cleaner.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Load {

@@ -1,4 +1,4 @@
-//! Loads a brush with the mixture that lies at a place.
+//! Loads a brush with the mixture at a place.
 
 use maulstick_optics::thinned;
 use maulstick_types::EditFields;
@@ -13,10 +13,10 @@ use crate::error::{EditError, SurfaceError};
 use crate::painting::Painting;
 use crate::painting::brushes::loads::{mixture_of, well_at};
 
-/// Load a brush with the mixture that lies at a place
+/// Load a brush with the mixture at a place
 ///
-/// What it carried goes to the cleaner. Of wet paint it is the mixture of all of it there, of dry paint that of the
-/// newest layer, of a well where nothing was painted the well's.
+/// The old load goes to the cleaner. Wet paint gives the mixture of all of it there, dry paint that of the newest
+/// layer, and an untouched well its own.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct LoadFrom {

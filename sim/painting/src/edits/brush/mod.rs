@@ -1,4 +1,4 @@
-//! Edits of brushes: what they carry and how they are used.
+//! Edits of brushes: their loads and their handling.
 
 mod clean;
 mod handle;

@@ -76,7 +76,7 @@ impl Form for Tune {
 }
 
 impl PaintingEdit for Tune {
-    /// Makes a brush stiffer or softer; who solves it hears of it by the scene.
+    /// Makes a brush stiffer or softer; its solver is informed by the scene.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         painting.bench.brushes.at(&self.brush)?;
         let scene = &mut painting.bench.desk.scene;

@@ -1,4 +1,4 @@
-//! Takes steps back, or does them again, up to one of them.
+//! Undoes or redoes steps up to one of them.
 
 use maulstick_types::EditFields;
 use maulstick_types::values::ValueError;

@@ -1,4 +1,4 @@
-//! Edits of the past: steps undone and redone, versions kept and returned to.
+//! Edits of the history: steps undone and redone, versions kept and restored.
 
 mod branch;
 mod forget;

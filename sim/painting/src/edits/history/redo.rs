@@ -1,4 +1,4 @@
-//! Does the newest undone step again.
+//! Redoes the newest undone step.
 
 use maulstick_types::EditFields;
 use maulstick_types::values::{BrushName, ValueError};

@@ -1,4 +1,4 @@
-//! Gives a dry layer another name.
+//! Renames a dry layer.
 
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
@@ -13,7 +13,7 @@ use crate::painting::Painting;
 pub struct NameLayer {
     /// Number of the layer.
     pub layer: u32,
-    /// Its name from now on.
+    /// New name of the layer.
     pub name: LayerName,
 }
 

@@ -62,7 +62,7 @@ fn count_or_all<'de, D: Deserializer<'de>>(from: D) -> Result<Option<u32>, D::Er
         return from.deserialize_any(CountOrAll);
     }
     match Option::<u32>::deserialize(from)? {
-        Some(0) => Err(D::Error::custom("no layer is to be made wet")),
+        Some(0) => Err(D::Error::custom("no layer is chosen")),
         layers => Ok(layers),
     }
 }
@@ -95,8 +95,8 @@ impl Form for Wet {
 impl PaintingEdit for Wet {
     /// Rewets the newest dry layers of a part in place.
     ///
-    /// A cell takes no more than it can hold: paint without room, and all under it there, stays dry. A layer that is
-    /// empty afterwards is removed from the scene. A layer whose opacity is not 1 is refused, for wet paint has no
+    /// A cell takes at most its capacity: paint without room, and all under it there, stays dry. A layer that is empty
+    /// afterwards is removed from the scene. A layer whose opacity is not 1 is refused, because wet paint has no
     /// opacity.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let Painting { bench, clock } = painting;

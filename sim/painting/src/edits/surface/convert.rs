@@ -1,4 +1,4 @@
-//! Gives the paint of a surface another model.
+//! Converts the paint of a surface to another model.
 
 use maulstick_models::{AutoRole, auto_model, model_called};
 use maulstick_types::EditFields;
@@ -13,8 +13,8 @@ use crate::painting::Painting;
 
 /// Convert the canvas to another paint model
 ///
-/// Volumes stay as they are, cell by cell. Where the models show paint in other colours, the paints of each cell are
-/// chosen anew from those of the painting, as near as they come.
+/// Each cell keeps its volumes. Where the models differ in colour, the paints of each cell are fitted from those of the
+/// painting.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Convert {
@@ -50,8 +50,9 @@ impl Form for Convert {
 }
 
 impl PaintingEdit for Convert {
-    /// Gives a surface another paint model: one step that can be undone. Each cell keeps the volume of each of its layers;
-    /// where the models differ in colour, its paints are fitted to what was seen. What brushes carry stays as it is.
+    /// Converts a surface to another paint model, as one step that can be undone. Each cell keeps the volume of each of
+    /// its layers; where the models differ in colour, its paints are fitted to the old appearance. Loads of brushes are
+    /// unchanged.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let Painting { bench, clock } = painting;
         let on = bench.desk.surfaces.at(self.surface)?;

@@ -1,4 +1,4 @@
-//! Lays an even film of wet paint over a surface.
+//! Covers a surface with an even film of wet paint.
 
 use maulstick_canvas::quantum::{Counts, QUANTUM_M, SLOTS};
 use maulstick_canvas::tile::TileId;
@@ -23,7 +23,7 @@ pub enum FillPaint {
         /// The paints.
         mixture: Mixture,
     },
-    /// The mean colour of the paint on a brush, which keeps what it has.
+    /// The mean colour of the paint on a brush, whose load is unchanged.
     Carried {
         /// The brush.
         brush: BrushName,
@@ -131,8 +131,8 @@ impl Form for Fill {
 }
 
 impl PaintingEdit for Fill {
-    /// Lays an even film of paint from the tubes, or of the colour that a brush carries on the whole; the brush keeps
-    /// what it has.
+    /// Covers a surface with an even film of paint from the tubes, or of the mean colour of a brush's load, which is
+    /// unchanged.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let bench = &mut painting.bench;
         let on = bench.desk.surfaces.at(self.surface)?;

@@ -121,12 +121,12 @@ impl<'a> Mirror<'a> {
 
     fn tile(&mut self, sources: Sources<&Tile>) -> Tile {
         let dry = self.stack(sources.map(|tile| tile?.dry()));
-        // The wet page comes after the links: what dries of it from now on is a layer of its own.
+        // The wet page comes after the links: paint drying from it is a separate layer.
         let wet = self.page(sources.map(|tile| tile?.wet_page()));
         Tile::of_pages(wet, dry)
     }
 
-    /// Links of a layer lie in the order in which they dried in both tiles.
+    /// Links of a layer, in their order of drying in both tiles.
     fn stack(&mut self, sources: Sources<&Arc<DryStack>>) -> Option<Arc<DryStack>> {
         let key = sources.map(|stack| stack.map(|stack| stack.id()));
         if let Some(known) = self.stacks.get(&key) {
@@ -208,7 +208,7 @@ impl<'a> Mirror<'a> {
         counts.with_own(own)
     }
 
-    /// Copies the cells of one of the two sources, each of so many values.
+    /// Copies the cells of one of the two sources, with a number of values each.
     fn copy<T: Copy>(&self, place: usize, from: &[T], into: &mut [T], values: usize) {
         let (columns, shift) = match place {
             0 => (0..self.columns, 0),

@@ -1,4 +1,4 @@
-//! Gives a surface another ground.
+//! Changes the ground of a surface.
 
 use std::str::FromStr;
 
@@ -13,7 +13,7 @@ use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
 use crate::error::EditError;
 use crate::painting::Painting;
 
-/// What a ground is made of.
+/// Source of a ground.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum GroundSource {
     /// A ground of this name; before a front end has read it, perhaps the path of a file.

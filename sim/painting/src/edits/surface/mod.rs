@@ -1,4 +1,4 @@
-//! Edits of a surface: its place, its light, what it is made of, films and wells.
+//! Edits of a surface: its place, light, materials, films and wells.
 
 mod convert;
 mod fill;

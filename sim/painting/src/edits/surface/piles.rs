@@ -1,4 +1,4 @@
-//! Lets paint on a surface deplete or last.
+//! Makes paint on a surface deplete or last.
 
 use maulstick_types::EditFields;
 use maulstick_types::nearest::choice;
@@ -24,7 +24,7 @@ pub struct Piles {
     pub surface: u32,
 }
 
-/// Words for what becomes of paint that brushes take up.
+/// Words for the two behaviours of paint that brushes take up.
 const WORDS: [&str; 2] = ["deplete", "last"];
 
 fn last_of(word: &str) -> Result<bool, ValueError> {

@@ -19,7 +19,7 @@ pub struct Relight {
     /// The light from now on; in range.
     #[serde(deserialize_with = "checked")]
     pub light: Light,
-    /// Whether the exposure is chosen anew, so that the bare canvas does not clip.
+    /// True if the exposure is chosen again, so that the bare canvas does not clip.
     pub expose: bool,
 }
 
@@ -29,7 +29,7 @@ fn checked<'de, D: Deserializer<'de>>(from: D) -> Result<Light, D::Error> {
     Ok(light)
 }
 
-/// Changes of a light; an absent field stays as it is.
+/// Changes of a light; absent fields are unchanged.
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
@@ -98,10 +98,9 @@ impl<'de> Deserialize<'de> for Exposure {
 }
 
 impl LightChange {
-    /// The light after the change; `illuminant` is the spectrum that it names, read by whoever may read files.
+    /// The light after the change; `illuminant` is its named spectrum, read by a caller with access to files.
     ///
-    /// # Errors
-    /// [`LightError`] for a light out of range.
+    /// # Errors [`LightError`] for a light out of range.
     pub fn on(
         &self,
         light: &Light,
@@ -211,7 +210,7 @@ impl Form for Relight {
 }
 
 impl PaintingEdit for Relight {
-    /// Changes the light. If its spectrum, or its conversion to colour, changes, dry layers are baked anew on demand,
+    /// Changes the light. If its spectrum, or its conversion to colour, changes, dry layers are baked again on demand,
     /// tile by tile.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let desk = &mut painting.bench.desk;

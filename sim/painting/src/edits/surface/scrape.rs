@@ -57,7 +57,7 @@ impl Form for Scrape {
 }
 
 impl PaintingEdit for Scrape {
-    /// Wet paint of a part goes to the cleaner, but for that in wells.
+    /// Moves the wet paint of a part to the cleaner, except in wells.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let Painting { bench, clock } = painting;
         bench.close_windows();

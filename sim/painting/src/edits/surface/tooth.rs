@@ -1,4 +1,4 @@
-//! Gives a surface another tooth.
+//! Changes the tooth of a surface.
 
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;

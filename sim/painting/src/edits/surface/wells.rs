@@ -1,4 +1,4 @@
-//! Gives a surface other wells.
+//! Replaces the wells of a surface.
 
 use std::sync::Arc;
 
@@ -16,13 +16,12 @@ use crate::painting::surfaces::WellMoves;
 
 /// Give a surface other wells
 ///
-/// Wells that move take the wet paint on them along; what lies on those that go, and where others come, is scraped
-/// off.
+/// Wells that move take their wet paint along; paint on removed wells, and where new ones come, is scraped off.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Wells {
     /// The surface.
     pub surface: u32,
-    /// Its wells from now on: few, round and within reach.
+    /// New wells: few, round and within reach.
     #[serde(deserialize_with = "few")]
     pub wells: Vec<Well>,
 }
@@ -73,8 +72,8 @@ impl Form for Wells {
 }
 
 impl PaintingEdit for Wells {
-    /// Gives a surface other wells. Those that move take the wet paint on them along; what lies on those that go, and
-    /// where others come, is scraped off.
+    /// Replaces the wells of a surface. Wells that move take their wet paint along; paint on removed wells, and where
+    /// new ones come, is scraped off.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let Painting { bench, clock } = painting;
         let on = bench.desk.surfaces.at(self.surface)?;

@@ -9,7 +9,7 @@ const SETTLE_EVERY: u32 = 256;
 pub(crate) struct Deferral {
     /// Deferred steps since its stroke began.
     steps: u32,
-    /// Those of them that are not settled.
+    /// Number of them that are unsettled.
     unsettled: u32,
     /// Fullness of the brush when it was last read.
     pub(in crate::painting) fullness: Option<f32>,

@@ -28,8 +28,10 @@ impl Models {
     }
 
     /// Reason why a model changed its backend; returned once.
-    pub(crate) fn take_fall(&mut self) -> Option<String> {
-        self.0.values_mut().find_map(|model| model.take_fall())
+    pub(crate) fn take_backend_change(&mut self) -> Option<String> {
+        self.0
+            .values_mut()
+            .find_map(|model| model.take_backend_change())
     }
 
     /// Limit of its backend that a model has met; returned once.

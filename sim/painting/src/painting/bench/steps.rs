@@ -1,4 +1,4 @@
-//! Steps of the history: their beginning, their end, and what is booked for them.
+//! Steps of the history: their beginning, end and bookings.
 
 use std::sync::Arc;
 
@@ -22,11 +22,11 @@ impl Workbench {
         }
     }
 
-    /// Begins a step of a brush, or of none: one for all who paint, then.
+    /// Begins a step of a brush, or without a brush, which then ends the steps of all.
     pub(crate) fn begin_step(&mut self, what: StepName, brush: Option<usize>) {
         self.book(brush);
         let own = self.brushes.name(brush).map(str::to_owned);
-        // A step of nobody's that is open here is a drying's: it is parted by what comes between.
+        // An open step without a brush is a drying's, and is split by the new one.
         self.end_step(|step| own.is_none() || step.brush.is_none() || step.brush == own);
         let before = self.non_tile_state();
         self.past.history.begin(what, own.as_deref(), before);
@@ -70,7 +70,7 @@ impl Workbench {
         self.end_step(|step| step.brush.as_ref() == Some(&own));
     }
 
-    /// Books what was booked since the last call for the step of a brush, or of none.
+    /// Assigns the bookings since the last call to the step of a brush, or of none.
     pub(crate) fn book(&mut self, brush: Option<usize>) {
         let booked = self.accounts.take_booked();
         if let Some(open) = self.past.history.open_of(self.brushes.name(brush)) {
@@ -106,7 +106,7 @@ impl Workbench {
         }
     }
 
-    /// The steps that are not finished, as they are if they end now.
+    /// The unfinished steps, as if they ended now.
     pub(crate) fn open_steps(&mut self) -> Vec<Step> {
         let after = self.non_tile_state();
         let open = self.past.history.open();

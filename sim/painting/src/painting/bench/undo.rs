@@ -42,7 +42,7 @@ impl Workbench {
         self.past.history.last_done(None).map_or(0, |step| step.id)
     }
 
-    /// Takes back all steps of a brush that came after the one with this number.
+    /// Undoes all steps of a brush after the one with this number.
     ///
     /// # Errors
     /// As [`undo`](Self::undo).
@@ -80,15 +80,14 @@ impl Workbench {
         Ok(self.walk(clock, &step, Direction::Redo))
     }
 
-    /// Undoes or redoes steps until the one of this number is the newest that is done, 0 for none, and returns its
-    /// name.
+    /// Undoes or redoes steps until the one with this number is the newest done one, 0 for none, and returns its name.
     ///
     /// # Errors
     /// [`EditError`] for an unknown step, and where something was painted over one on the way: then nothing has changed.
     pub(crate) fn go_to(&mut self, clock: &mut Clock, step: u64) -> Result<StepName, EditError> {
         let open = self.past.history.open().find(|open| open.id == step);
         if let Some(what) = open.map(|open| open.what.clone()) {
-            // Of steps that are not finished none counts as newer.
+            // Unfinished steps do not count as newer.
             return Ok(what);
         }
         let way = self.past.history.way_to(step).ok_or(HistoryError::NoStep)?;
@@ -144,7 +143,7 @@ impl Workbench {
         let other_rest = layers.is_some_and(|ends| ends[from] != self.desk.scene.layers)
             || made.is_some_and(|ends| ends[from] != materials(&self.desk.scene));
         let other_books = !self.accounts.ledger.can_book(&effects.booked, way.times());
-        // A later step may have led back to what this one left, as a return to a version does.
+        // A later step may have led back to the tiles of this one, like a return to a version.
         let later = match way {
             Direction::Undo => self.past.history.later_on(step),
             Direction::Redo => None,
@@ -174,7 +173,7 @@ impl Workbench {
                 brush.carry(&pages[to]);
             }
         }
-        self.accounts.turn(&effects.booked, way.times());
+        self.accounts.book(&effects.booked, way.times());
         let (layers, made) = (effects.layers.as_ref(), effects.materials.as_ref());
         let desk = &mut self.desk;
         desk.restore(layers.map(|ends| &ends[to]), made.map(|ends| &ends[to]));
@@ -186,8 +185,8 @@ impl Workbench {
         step.what.clone()
     }
 
-    /// Restores the height of the paint where nothing else was painted meanwhile: then the same motion paints the same
-    /// again.
+    /// Restores the height of the paint where no other paint was added meanwhile, so that the same motion paints the
+    /// same again.
     fn turn_tops(&mut self, step: &Step, way: Direction) {
         let newest = self
             .past

@@ -1,4 +1,4 @@
-//! Handling of brushes: modes, tuning, and what lies under them (Baxter 2004, § 6.7).
+//! Handling of brushes: modes, tuning, and the paint under them (Baxter 2004, § 6.7).
 
 use maulstick_canvas::quantum::{CELL_MAX, QUANTUM_M, REFERENCE_CELL_M, UNIT_M};
 use maulstick_model::interface::{Handling, StepReport, Transfer};
@@ -17,7 +17,7 @@ pub struct UnderBrush {
 }
 
 impl UnderBrush {
-    /// Mean findings of so many steps in paint of this rheology.
+    /// Mean of a report over a number of steps, in paint of this rheology.
     pub(crate) fn mean(report: &StepReport, steps: u32, cell_m: f64, rheology: &Rheology) -> Self {
         let mean = |sum: u64| (sum / u64::from(steps.max(1))) as f64;
         let [cells, wet, thinner] = [report.footprint_cells, report.wet, report.thinner].map(mean);

@@ -15,11 +15,11 @@ use crate::painting::backend::deferral::Deferral;
 use crate::painting::desk::Desk;
 use crate::painting::optics::thinner_slot;
 
-/// What a brush takes up, by the halves of its head: slots and shares.
+/// Paint to be taken up, by the halves of a head: slots and shares.
 type Halves<'a> = [(&'a [(usize, f64)], Half)];
 
 impl PaintingBrush {
-    /// Gives what it carries to the cleaner.
+    /// Moves its load to the cleaner.
     pub(crate) fn empty(&mut self, ledger: &mut Ledger) {
         self.deferral = Deferral::default();
         let left = Arc::make_mut(&mut self.load).take_all();
@@ -69,7 +69,7 @@ pub(crate) fn named(mixtures: &[Mixture]) -> Vec<String> {
     names
 }
 
-/// Mixture of the well at a place, m, which nobody has stirred there.
+/// Mixture of the well at a place, m, as filled.
 pub(crate) fn well_at(surface: &Surface, at_m: [f64; 2]) -> Option<Mixture> {
     let mut wells = surface.wells.iter();
     let well = wells.find(|well| {
@@ -83,7 +83,7 @@ pub(crate) fn well_at(surface: &Surface, at_m: [f64; 2]) -> Option<Mixture> {
     }
 }
 
-/// Mixture of counted paint, shares by volume; `None` if there is none.
+/// Mixture of counted paint, shares by volume; `None` without paint.
 pub(crate) fn mixture_of(counts: &Counts, scene: &Scene) -> Option<Mixture> {
     let total: u64 = counts.iter().sum();
     let counted = scene.paints.iter().zip(counts);

@@ -1,4 +1,4 @@
-//! Brushes: their heads, what they carry, and where they are on their way.
+//! Brushes: their heads, loads and paths.
 
 pub(crate) mod handling;
 pub(crate) mod loads;
@@ -24,13 +24,13 @@ use handling::UnderBrush;
 /// Bits of a seed.
 const SEEDS: u64 = 0x7fff_ffff;
 
-/// A brush as the painting knows it.
+/// State of a brush in the painting.
 pub(crate) struct PaintingBrush {
     pub(crate) name: String,
     pub(crate) file: BrushFile,
-    /// The brush with as many strips as cells can tell apart.
+    /// The brush with the strips that cells can resolve.
     pub(crate) thinned: BrushFile,
-    /// Its head as its file has it.
+    /// Its head without disorder.
     pub(crate) tidy: Arc<Head>,
     /// The same with the disorder of its bristles since the newest stroke began.
     pub(crate) head: Arc<Head>,
@@ -39,7 +39,7 @@ pub(crate) struct PaintingBrush {
     kept: Option<(Arc<BrushLoad>, Page<BrushLoad>)>,
     /// Epoch of the brush and number of the newest stroke.
     pub(crate) stroke: Option<(u32, u64)>,
-    /// While it is in contact: index of the surface, and its way.
+    /// Index of the surface, and path, while it is in contact.
     pub(crate) path: Option<(usize, PathStepper)>,
     /// Index of a surface, and the tiles of it that the brush works on.
     pub(crate) window: Option<(usize, Window)>,
@@ -56,7 +56,7 @@ pub(crate) struct PaintingBrush {
 }
 
 impl PaintingBrush {
-    /// A clean brush, thinned to the strips that cells so wide, m, can tell apart.
+    /// A clean brush, thinned to the strips that cells of `cell_m` can resolve.
     fn new(name: &str, file: BrushFile, cell_m: f64) -> Self {
         let thinned = file.thinned(cell_m);
         let tidy = Arc::new(Head::of(&thinned));
@@ -79,7 +79,7 @@ impl PaintingBrush {
         }
     }
 
-    /// Gives it another file; what it carries is spread anew where that has another number of strips.
+    /// Replaces its file; its load is spread again where that has another number of strips.
     fn set_file(&mut self, file: BrushFile, cell_m: f64) {
         let thinned = file.thinned(cell_m);
         let head = Arc::new(Head::of(&thinned));
@@ -93,7 +93,7 @@ impl PaintingBrush {
         self.head = self.disordered();
     }
 
-    /// Its traits on cells so wide, m, without zoom.
+    /// Its traits on cells of `cell_m`, without zoom.
     pub(crate) fn traits(&self, cell_m: f64) -> BrushTraits {
         BrushTraits::of(&self.thinned, cell_m, 1.0)
     }
@@ -123,7 +123,7 @@ impl PaintingBrush {
         Arc::make_mut(&mut self.load).disorder(self.seed);
     }
 
-    /// Thins it to the strips that cells so wide, m, can tell apart.
+    /// Thins it to the strips that cells of `cell_m` can resolve.
     pub(crate) fn thin_for(&mut self, cell_m: f64) {
         let thinned = self.file.thinned(cell_m);
         if thinned == self.thinned {
@@ -163,7 +163,7 @@ impl PaintingBrush {
             || self.load.counts() == page.get().counts()
     }
 
-    /// Has it carry what is on a page.
+    /// Replaces its load by that of a page.
     pub(crate) fn carry(&mut self, page: &Page<BrushLoad>) {
         let load = page.get();
         self.path = None;
@@ -222,7 +222,7 @@ impl Brushes {
         brush.map(|brush| self.0[brush].name.as_str())
     }
 
-    /// Introduces a brush, or gives a known one another file.
+    /// Defines a brush, or replaces the file of a known one.
     pub(crate) fn define(&mut self, name: &str, file: BrushFile, cell_m: f64) {
         match self.place(name) {
             Ok(place) => self.0[place].set_file(file, cell_m),

@@ -5,9 +5,8 @@ use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::interface::Transfer;
 use maulstick_types::scene::{PALETTE, Surface};
 
-/// Share of what a film lacks that comes from inside, and of its surplus that goes there, each time
-/// that paint flows in a brush on the palette, on reference cells: there it is filled through and
-/// through.
+/// Share of a film's deficit filled from inside, and of its surplus returned, at each flow in a brush on the palette,
+/// on reference cells: there it is filled through.
 const DIP: f64 = 0.6;
 /// Factor on the path length where a brush is filled: it is stirred and turned.
 const STIRRED: f32 = 4.0;

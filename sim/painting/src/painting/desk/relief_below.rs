@@ -1,7 +1,7 @@
-//! Relief of a surface below a brush, as the hand feels it: tooth, what has dried on it, and a little of the wet paint.
+//! Relief of a surface below a brush, for the force on the hand: tooth, dried paint, and a little of the wet paint.
 //!
-//! Each height is the mean of a cell that is a millimetre wide on the desk, for a head rests on several threads at once. Of
-//! wet paint a share of its height stays, as of what is pressed flat, by the rheology of the surface's model.
+//! Each height is the mean over a cell that is a millimetre wide on the desk, because a head rests on several threads
+//! at once. Wet paint counts with a share of its height, as it is pressed flat, by the rheology of the surface's model.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -20,13 +20,13 @@ use super::Desk;
 use crate::painting::optics::thinner_slot;
 use crate::painting::surfaces::SurfaceState;
 
-/// Side of a cell on the desk, m; where a cell of the paint is wider, that one's.
+/// Least side of a cell on the desk, m; a wider cell of the paint is used as it is.
 const CELL_M: f64 = 1e-3;
 /// Cells along a side: the hand may go half of it before the next relief comes.
 const SIDE: u32 = 24;
-/// Points of a cell along its side at most whose mean is its height.
+/// Greatest number of points along the side of a cell whose mean is its height.
 const POINTS: i64 = 4;
-/// A tip that is higher than this feels nothing soon, m of the desk.
+/// Height of a tip above which it feels nothing soon, m of the desk.
 const FAR_M: f64 = 0.03;
 
 impl Desk {
@@ -62,14 +62,14 @@ impl Desk {
     }
 }
 
-/// Heights of a surface's cells, tile by tile as they are asked for.
+/// Heights of a surface's cells, read tile by tile on demand.
 struct Heights<'a> {
     surface: &'a SurfaceState,
     thinner: Option<usize>,
     tiles: BTreeMap<TileId, TileHeights>,
 }
 
-/// What makes the height of a tile.
+/// Inputs of a tile's heights.
 struct TileHeights {
     tooth_m: Arc<[f32]>,
     dry: Option<Arc<[f32]>>,

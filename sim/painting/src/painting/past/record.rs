@@ -1,4 +1,4 @@
-//! The record of what was accepted, as far as the painting decides on it.
+//! The painting's part of its record.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::snapshot::RECORD_QUOTA;
 pub(crate) struct RecordState {
     /// Most bytes of it; 0 keeps none.
     pub(crate) quota: u64,
-    /// Where it begins, if its document has that.
+    /// Its beginning, if the document has it.
     beginning: Option<Arc<Beginning>>,
     /// True if something happened that cannot be executed again from its beginning.
     pub(crate) is_broken: bool,
@@ -37,9 +37,9 @@ impl RecordState {
         own.chain(named).flatten()
     }
 
-    /// Notes that a step was undone or redone. One of before the beginning is not there when the record is executed again,
-    /// nor is one that became one with others by the room that there was.
-    pub(crate) fn turn(&mut self, step: &Step) {
+    /// Handles a step that was undone or redone. A step from before the beginning does not exist in a replay, nor does
+    /// one that was merged because of the quota.
+    pub(crate) fn move_to(&mut self, step: &Step) {
         self.is_broken |= step.operations > 1 && self.beginning.is_some();
         self.go_to(step.id);
     }

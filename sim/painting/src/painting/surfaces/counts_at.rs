@@ -1,4 +1,4 @@
-//! Paint at a place of a surface: what is wet there, or else the newest dry layer.
+//! Paint at a place of a surface: the wet paint, or else the newest dry layer.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use maulstick_types::paint::TILE;
 
 use super::SurfaceState;
 
-/// Radius around the place in which paint counts, m; at least the cell under it does.
+/// Radius of counted paint around the place, m; at least the cell under it counts.
 const RADIUS_M: f64 = 5e-4;
 
 impl SurfaceState {

@@ -34,7 +34,7 @@ pub(crate) struct FilmTile {
 /// than a tile.
 #[derive(Default)]
 pub(crate) struct Films {
-    /// By the page of what was wet; 0 where nothing was.
+    /// Results by the page of the wet paint; 0 without any.
     laid: HashMap<u64, Laid>,
     /// Most quanta that has dried on a cell, by the pages of the layers.
     beneath: HashMap<Vec<u64>, f32>,

@@ -49,7 +49,7 @@ impl SurfaceState {
         Window::open(&mut self.store, rect, &self.bare.relief)
     }
 
-    /// Its tiles on which something was painted.
+    /// Its painted tiles.
     pub(crate) fn tiles(&self) -> impl Iterator<Item = &Arc<Tile>> {
         let versions = self.store.iter();
         versions.filter_map(|(_, version)| version.tile.as_ref())
@@ -115,7 +115,7 @@ impl Surfaces {
         self.find(surface)?.store.version(id).tile.clone()
     }
 
-    /// Puts a tile in the place of another, which is returned.
+    /// Replaces a tile, and returns the old one.
     pub(crate) fn put(&mut self, (surface, id): TilePlace, tile: TileRef) -> TileRef {
         self.newest_version += 1;
         let number = self.newest_version;
@@ -123,7 +123,7 @@ impl Surfaces {
         found.store.replace(id, Version { number, tile }).tile
     }
 
-    /// Writes what a window on a surface holds back to its tiles; `replaced` gets the tiles of before.
+    /// Writes the windows of a surface back to its tiles; `replaced` receives the old tiles.
     pub(crate) fn commit(
         &mut self,
         on: usize,

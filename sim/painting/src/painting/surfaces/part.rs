@@ -1,4 +1,4 @@
-//! Parts of surfaces, and what of them is wet or dry.
+//! Parts of surfaces, and their wet and dry paint.
 
 use crate::error::{EditError, SurfaceError};
 use std::collections::BTreeSet;
@@ -69,7 +69,7 @@ impl SurfaceState {
         }
         let mut stays: Vec<usize> = self.bare.cells_in_wells(id).collect();
         let cells = self.store.cells();
-        // Nothing lies beyond the surface's edge.
+        // Nothing is beyond the surface's edge.
         let holds = |i: usize| from[i] <= corner[i] && (corner[i] + side).min(cells[i]) <= to[i];
         if !(holds(0) && holds(1)) {
             let within = |i: usize, at: u32| (from[i]..to[i]).contains(&(corner[i] + at));
@@ -82,7 +82,7 @@ impl SurfaceState {
         Some(stays)
     }
 
-    /// For each cell of a tile, true if it is of a part and in no well; `None` if the whole tile is outside.
+    /// For each cell of a tile, true if it is in a part and in no well; `None` if the whole tile is outside.
     fn within(&self, part: &Part, id: TileId) -> Option<Vec<bool>> {
         let mut within = vec![true; TILE_CELLS];
         for cell in self.staying(part, id)? {
@@ -96,7 +96,7 @@ impl SurfaceState {
         self.wet_tiles_from(0)
     }
 
-    /// Its tiles with wet paint, from the one of a number on, row after row from the bottom.
+    /// Its tiles with wet paint, from the one with a number on, row by row from the bottom.
     pub(crate) fn wet_tiles_from(&self, first: u32) -> impl Iterator<Item = (TileId, &Arc<Tile>)> {
         let tiles = self.store.iter().skip(first as usize);
         tiles.filter_map(|(id, version)| {

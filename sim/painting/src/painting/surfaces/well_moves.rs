@@ -1,7 +1,7 @@
-//! Wells that move take the wet paint on them along.
+//! Wells that move take their wet paint along.
 //!
-//! Each cell gets the wet paint of one cell of before, or none, and no two get that of the same: so no quantum is made.
-//! What none gets is scraped off.
+//! Each cell gets the wet paint of at most one earlier cell, and no two get that of the same: so no quantum is created.
+//! Paint without a new cell is scraped off.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -20,7 +20,7 @@ use super::{Changed, SurfaceState};
 
 /// Wells nearer to each other than this are at the same place, m.
 const SAME_M: f64 = 1e-9;
-/// A heap may reach beyond its well's edge by what rounding its way to whole cells makes of it, cells.
+/// Number of cells by which a heap may exceed its well's edge, because its path is rounded to whole cells.
 const ROUNDED: f64 = 1.0;
 
 /// Column and row of a cell of a surface.
@@ -48,7 +48,7 @@ impl Disc {
         middle.distance_squared(self.center) < radius * radius
     }
 
-    /// The tiles that it, grown by `ROUNDED`, may lie on.
+    /// The tiles under it, grown by `ROUNDED`.
     fn tiles(&self) -> impl Iterator<Item = TileId> {
         let reach = DVec2::splat(self.radius + ROUNDED);
         let tile = |cell: f64| (cell / TILE as f64).floor().max(0.0) as u32;
@@ -58,14 +58,14 @@ impl Disc {
     }
 }
 
-/// A well of before and what became of it: where it is now, and its way there, cells.
+/// An earlier well with its new place, and its path, cells.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WellMove {
     from: Disc,
     to: Option<(Disc, Cell)>,
 }
 
-/// What becomes of the wet paint of a surface whose wells change.
+/// Motion of the wet paint of a surface whose wells change.
 #[derive(Debug)]
 pub(crate) enum WellMoves {
     /// All of it changes sides.
@@ -73,7 +73,7 @@ pub(crate) enum WellMoves {
         /// Cells across.
         across: i64,
     },
-    /// That on wells goes with them.
+    /// Paint on wells moves with them.
     Wells {
         /// The wells of before.
         ways: Vec<WellMove>,
@@ -83,8 +83,8 @@ pub(crate) enum WellMoves {
 }
 
 impl WellMoves {
-    /// The moves from the wells of `before` to those of `now` on a surface. A well is the nearest one of before that
-    /// does the same.
+    /// The moves from the wells of `before` to those of `now` on a surface. A well is matched with the nearest earlier
+    /// one with the same function.
     pub(crate) fn between((before, now): (&[Well], &[Well]), surface: &Surface) -> Self {
         let cell_m = surface.cell_m;
         let far = |one: &Well, other: &Well| {
@@ -107,7 +107,7 @@ impl WellMoves {
                 to: None,
             })
             .collect();
-        // Those that stay are known first, or a twin would take their place.
+        // Unmoved ones are matched first, because a twin could take their place.
         let mut found: Vec<Option<usize>> = vec![None; now.len()];
         for (own, well) in found.iter_mut().zip(now) {
             *own = (0..before.len())
@@ -199,7 +199,7 @@ fn cells_of(id: TileId) -> impl Iterator<Item = Cell> {
     })
 }
 
-/// The tile of a cell of a surface of so many cells, and the cell's place in it.
+/// The tile of a cell of a surface with `cells`, and the cell's index in it.
 fn place([x, y]: Cell, cells: [u32; 2]) -> Option<(TileId, usize)> {
     let (x, y) = (u32::try_from(x).ok()?, u32::try_from(y).ok()?);
     let side = TILE as u32;
@@ -223,7 +223,7 @@ impl Before {
         Self(wet.collect())
     }
 
-    /// The planes whose cells have what these cells of before had; a cell without one has nothing.
+    /// Planes with the values of these earlier cells; a cell without one is empty.
     fn gathered(&self, from: &[Option<(TileId, usize)>]) -> Planes {
         let mut counts: BTreeMap<usize, Vec<f32>> = BTreeMap::new();
         let mut own: BTreeMap<OwnShape, Vec<u8>> = BTreeMap::new();
@@ -261,7 +261,7 @@ impl Before {
 }
 
 impl SurfaceState {
-    /// Its tiles that differ once its wells have moved.
+    /// The tiles changed by the motion of its wells.
     pub(crate) fn with_moved_paint(&self, moves: &WellMoves, pager: &Arc<Pager>) -> Changed {
         let before = Before::of(&self.store);
         let wet: BTreeSet<TileId> = before.0.keys().copied().collect();
@@ -300,7 +300,7 @@ mod tests {
         PaintingSetup::default().scene().surfaces[1].clone()
     }
 
-    /// Every cell of before, at most once.
+    /// Sources of the cells, each at most once.
     fn sources(moves: &WellMoves, cells: [u32; 2]) -> BTreeMap<Cell, Cell> {
         let [across, up] = cells.map(i64::from);
         let mut taken = BTreeMap::new();

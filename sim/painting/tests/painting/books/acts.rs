@@ -1,10 +1,10 @@
-//! Random acts of a painter, and what each does.
+//! Random acts of a painter, and their execution.
 
 use maulstick_types::Edit;
 
 use super::*;
 
-/// Places over a surface that hang together, some far off, in and beside it, high and low.
+/// Connected places over a surface, some far off, in and beside it, high and low.
 pub(super) fn way(
     surface: u32,
     around: [f64; 2],
@@ -26,7 +26,7 @@ pub(super) fn way(
     prop::collection::vec(place, 2..5)
 }
 
-/// What a painter does.
+/// An act of a painter.
 #[derive(Clone, Debug)]
 pub(super) enum Act {
     Paint(usize, Vec<Place>),

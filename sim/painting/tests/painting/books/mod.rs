@@ -1,4 +1,4 @@
-//! Whatever is done to a painting in whatever order, the tubes gave just what is found.
+//! After any sequence of edits, the tubes gave exactly the paint that is found.
 
 mod acts;
 
@@ -70,13 +70,13 @@ fn painting(size_mm: f64) -> Painting {
     painting
 }
 
-/// Where a brush is: ferrule, bend of its joints, turn.
+/// Place of a brush: ferrule, bend of its joints, rotation.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     surface: u32,
-    /// Of the ferrule, mm.
+    /// Place of the ferrule, mm.
     at_mm: [f64; 2],
-    /// Of the ferrule, by the head's length.
+    /// Height of the ferrule, by the head's length.
     height: f64,
     bend: [f32; 2],
     turn: f64,
@@ -144,8 +144,8 @@ proptest! {
         prop_assert!(painting.scene().layers.is_empty());
     }
 
-    /// Strokes that leave the canvas and come back, jump, hover and turn, with full and empty
-    /// brushes, also wider than the canvas.
+    /// Strokes that leave the canvas and come back, jump, hover and turn, with full and empty brushes, also wider than
+    /// the canvas.
     #[test]
     fn no_stroke_makes_or_loses_paint(
         ways in prop::collection::vec((way(CANVAS, [8.0, 8.0], 14.0), 0..4usize), 1..6),
@@ -208,7 +208,7 @@ const LOW: Place = Place {
     turn: 0.0,
 };
 
-/// A way of 8 mm across the canvas, from `from_mm` to `to_mm`.
+/// A path of 8 mm across the canvas, from `from_mm` to `to_mm`.
 fn across(from_mm: f64, to_mm: f64) -> Vec<Place> {
     let at = |x| Place {
         at_mm: [x, 8.0],
@@ -268,7 +268,7 @@ fn what_is_painted_after_a_command_within_a_stroke_is_undone_too() {
     }
 }
 
-/// What a brush carried before it got more or fewer strips goes on those that it has now.
+/// A load from before a change of the strips is moved to the present ones.
 #[test]
 fn a_load_from_before_a_brush_had_other_strips_comes_back() {
     for strips in [31, 60] {
@@ -308,7 +308,7 @@ fn a_head_in_the_air_and_a_clean_one_leave_nothing() {
     );
 }
 
-/// Nothing is painted between two poses where the solver began anew.
+/// Nothing is painted between two poses where the solver restarted.
 #[test]
 fn a_restart_paints_nothing_on_its_way() {
     let mut painting = painting(10.0);
@@ -332,7 +332,7 @@ fn a_restart_paints_nothing_on_its_way() {
     );
 }
 
-/// A dry stroke stays as high as it was, is in the books as dry, and catches the next one.
+/// A dried stroke keeps its height, is booked as dry, and catches the next one.
 #[test]
 fn what_has_dried_stays_and_catches_paint() {
     let mut painting = painting(10.0);

@@ -1,4 +1,4 @@
-//! A painting to dry, and what is looked at in it.
+//! A painting to dry, and its measurements.
 
 use super::*;
 use crate::studio::{BRUSH, header, painting, round, solve, state};
@@ -119,14 +119,14 @@ pub(super) fn farthest(one: &[[f32; 3]], other: &[[f32; 3]]) -> f32 {
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
 }
 
-/// The mean of how far channels are apart.
+/// Mean difference of channels.
 pub(super) fn mean_off(one: &[[f32; 3]], other: &[[f32; 3]]) -> f64 {
     let pairs = one.iter().flatten().zip(other.iter().flatten());
     let sum: f64 = pairs.map(|(a, b)| f64::from((a - b).abs())).sum();
     sum / (3 * one.len()) as f64
 }
 
-/// Links of the stacks, at most.
+/// Greatest number of links of a stack.
 pub(super) fn depth(sequencer: &Sequencer) -> usize {
     let store = sequencer.painting().store(CANVAS).expect("a canvas");
     let tiles = store.iter().filter_map(|(_, version)| version.tile.clone());

@@ -1,4 +1,4 @@
-//! Paint that dries in part, in places and while time goes by, and becomes wet again.
+//! Paint that dries in part, in places and over time, and is rewetted.
 
 mod easel;
 
@@ -31,9 +31,9 @@ const CELL_M: f64 = 2.5e-4;
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(12) })]
 
-    /// Film under film of one mixture is one film (Baxter 2004, eq. 7.7). What is left is that a layer
-    /// holds whole quanta: where paint is thin and has a trace of another in it, one quantum of 1.5 nm of
-    /// that lies in the other film, which shows as 4e-4 at worst, and as 2e-5 in the mean.
+    /// Film under film of one mixture is one film (Baxter 2004, eq. 7.7). The remaining difference is that a layer
+    /// holds whole quanta: where thin paint has a trace of another, one quantum of 1.5 nm of that is in the other film,
+    /// a difference of 4e-4 at worst, and 2e-5 in the mean.
     #[test]
     fn drying_any_shares_changes_no_colour_and_loses_no_quantum(
         shares in proptest::collection::vec(0.01f32..=1.0, 1..5),
@@ -44,10 +44,7 @@ proptest! {
         for share in &shares {
             let share = *share;
             let region = "5,5,20x10".parse().expect("a region");
-            let command = match part {
-                true => dry(share, "", Some(region)),
-                false => dry(share, "", None),
-            };
+            let command = if part { dry(share, "", Some(region)) } else { dry(share, "", None) };
             // All may be dry already.
             sequencer.edit(command).ok();
             prop_assert_eq!(both(counts(&mut sequencer)), paint);
@@ -129,7 +126,7 @@ fn paint_dries_evenly_into_one_layer_over_the_time() {
             let [wet, dry] = counts(&mut sequencer);
             assert_eq!(both([wet, dry]), paint);
             let share = sum(&dry) as f64 / sum(&paint) as f64;
-            // It goes in rounds of a 32nd of the time.
+            // In rounds of a 32nd of the time.
             let due = f64::from(tick) / 5400.0;
             assert!(
                 share <= due && share > due - 1.0 / 32.0 - 1e-3,
@@ -167,7 +164,7 @@ fn a_stroke_meanwhile_is_one_step_and_dries_in_what_is_left() {
     let [_, dry] = counts(&mut sequencer);
     assert!(sum(&dry) > 0);
     let (steps, _) = sequencer.painting().history_depth();
-    // Contacts less than .15 s apart, .1 s here, are one stroke; time goes by all along.
+    // Contacts less than .15 s apart, .1 s here, are one stroke; time passes throughout.
     for part in 0..4 {
         stroke(&mut sequencer, 2 + part, 3, 11.0, true);
         ticks(&mut sequencer, 6);

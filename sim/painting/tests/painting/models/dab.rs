@@ -64,7 +64,7 @@ fn what_dries_in_parts_looks_as_before() {
         let dried = picture(&mut painting, CANVAS).rgb;
         assert!(apart(&wet, &dried) <= 2, "{}", apart(&wet, &dried));
     }
-    // The scene of plain layers: all that has dried, without what stayed wet over it.
+    // The scene of plain layers: all dried paint, without the wet paint over it.
     let whole = |share: f32| {
         let mut painting = easel("impasto");
         painting.apply(fill(BLUE, 30.0)).expect("laid");

@@ -1,4 +1,4 @@
-//! Every paint model behind a painting: strokes, undo, drying, the books; and what the marker alone does.
+//! Every paint model in a painting: strokes, undo, drying, the ledger; and properties of the marker alone.
 
 mod dab;
 

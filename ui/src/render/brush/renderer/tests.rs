@@ -119,7 +119,7 @@ struct RigState {
 }
 
 impl RigState {
-    /// So many pixels, so many of them a metre.
+    /// An image of `size` pixels with `scale` pixels a metre.
     fn new(size: [u32; 2], scale: f64) -> Self {
         let picture = Offscreen::new(size).expect("a Vulkan driver");
         Self {
@@ -196,7 +196,7 @@ impl RigState {
         }
     }
 
-    /// Where a point of the desk is, pixels.
+    /// Pixel of a point of the desk.
     fn place(&self, at: DVec3) -> [usize; 2] {
         let at = self.view.to_window(at);
         [at.x as usize, at.y as usize]
@@ -244,7 +244,7 @@ fn over(grey: u8) -> [(Rect, u8); 1] {
     [(Rect::EVERYTHING, grey)]
 }
 
-/// Where the lamp's shadow of a brush's ferrule falls on the canvas.
+/// Point of the canvas on which the lamp's shadow of a brush's ferrule falls.
 fn shadow_of(hand: &InHand, scene: &Scene) -> DVec3 {
     let toward = lamp_over(scene, CANVAS).toward.map(f64::from);
     let run = DVec3::new(toward[0], toward[1], toward[2]) / toward[2];

@@ -1,6 +1,6 @@
-// What of the head reaches a cell, of the segment that won it.
+// Part of the head that covers a cell, from the segment that won it.
 
-// Its height as it was solved, and how far it keeps off what it lies on.
+// Its solved height, and its distance from what it rests on.
 struct Fragment {
     texel: u32,
     z: f32,
@@ -55,7 +55,7 @@ fn covered(cell: u32) -> f32 {
     return 1.0 - decay(-f32(atomicLoad(&keys[cells() + cell])) / PER_LOG);
 }
 
-// Notes where the head is: a contact, or a cell that it is over.
+// Records the place of the head: a contact, or a cell below it.
 fn note_place(at: vec2<u32>) {
     for (var axis = 0u; axis < 2u; axis++) {
         raise(stat(LEAST_TOUCHED) + axis, u32(BIAS) - at[axis]);

@@ -1,19 +1,18 @@
-// Segments of ribbons and triangles of skin, as they are drawn and as they are met again in the cells
-// that they win.
+// Segments of ribbons and triangles of skin, both as drawn and as looked up in the cells that they won.
 
-// A piece of a strip's middle line with what it carries: values at its beginning, and their change.
+// A piece of a strip's middle line with its attributes: values at its beginning, and their change.
 struct Ribbon {
     start: vec2<f32>,
     way: vec2<f32>,
     z: vec2<f32>,
-    // How far it keeps off what it lies on, and by how much it counts as higher than others as deep.
+    // Distance from what it rests on, and penalty in comparisons of equal depth.
     bottom: f32,
     rank: f32,
-    // Place along the strip in texels.
+    // Place along the strip, texels.
     along: vec2<f32>,
     // Half its width.
     half: f32,
-    // Whether what touches of it begins here (1) and whether it ends here (2).
+    // Flags: contact begins here (1), contact ends here (2).
     ends: f32,
     moved: vec2<f32>,
     moves: vec2<f32>,
@@ -36,26 +35,25 @@ fn ribbon_of(number: u32) -> Ribbon {
     return Ribbon(a.xy, a.zw, b.xy, b.z, b.w, c.xy, c.z, c.w, d.xy, d.zw);
 }
 
-// The direction of a ribbon: along which axis it mostly goes, and how it leaves it; and how it goes over the
-// cells in the step.
+// Direction of a ribbon: its major axis, its slope, and its motion over the cells in the step.
 struct Line {
     major: u32,
     inverse: f32,
     slope: f32,
     cosine: f32,
-    // Cells over which an edge is soft: a cell, or the way across; and the most of a cell that is covered.
+    // Width of a soft edge, cells: a cell, or the path across; and the greatest cover of a cell.
     soft: f32,
     most: f32,
-    // Columns from its lower to its upper end, with what it goes on past them.
+    // Columns from its lower to its upper end, and its extension beyond them.
     low: f32,
     high: f32,
-    // By column, share of a column before the lower and after the upper end; 0 where others go on.
+    // Fade per column before the lower and after the upper end; 0 where other segments continue.
     fades: vec2<f32>,
 }
 
-// An end is soft over so many cells at least.
+// Least width of a soft end, cells.
 const SHARP = 0.25;
-// How far a strip goes on past its tip.
+// Extension of a strip beyond its tip, cells.
 const TIP = 0.5;
 
 fn line_of(ribbon: Ribbon) -> Line {
@@ -90,16 +88,16 @@ fn line_of(ribbon: Ribbon) -> Line {
     );
 }
 
-// How far from its middle a ribbon covers anything.
+// Distance from its middle line within which a ribbon covers cells.
 fn reach_of(ribbon: Ribbon, line: Line) -> f32 {
     return ribbon.half + 0.5 * line.soft;
 }
 
-// Where a column of cells (or a row, along `major`) crosses the ribbon.
+// Crossing of a column of cells (or a row, along `major`) with the ribbon.
 struct Crossing {
     t: f32,
     middle: f32,
-    // Share of the way for which the ribbon is there.
+    // Share of the path on which the ribbon is present.
     fade: f32,
 }
 
@@ -112,7 +110,7 @@ fn place_on(ribbon: Ribbon, line: Line, m: f32) -> Crossing {
     return Crossing(clamp(off * line.inverse, 0.0, 1.0), middle, fade);
 }
 
-// Share of a cell that the ribbon covers; not above 0 where it does not.
+// Share of a cell that the ribbon covers; 0 or negative outside it.
 fn cover_of(ribbon: Ribbon, line: Line, place: Crossing, n: f32) -> f32 {
     let off = abs(n - place.middle) * line.cosine;
     return min((reach_of(ribbon, line) - off) / line.soft, line.most) * place.fade;
@@ -123,7 +121,7 @@ struct Triangle {
     a: vec2<f32>,
     b: vec2<f32>,
     c: vec2<f32>,
-    // Of each corner: height, motion, place around and along the head.
+    // For each corner: height, motion, place around and along the head.
     z: vec3<f32>,
     moved_x: vec3<f32>,
     moved_y: vec3<f32>,
@@ -154,7 +152,7 @@ fn triangle_of(number: u32) -> Triangle {
         triangle.z[i] = poses[point + 2u * step.vertices];
         triangle.moved_x[i] = poses[point + 3u * step.vertices];
         triangle.moved_y[i] = poses[point + 4u * step.vertices];
-        // A face over the seam goes on beyond 1.
+        // A face over the seam continues beyond 1.
         let around = bitcast<f32>(head[places + 2u * corner]);
         triangle.around[i] = around + round(first - around);
         triangle.along[i] = bitcast<f32>(head[places + 2u * corner + 1u]);

@@ -1,38 +1,38 @@
-// What the stages of steps share, whatever the paint model: parameters and buffers. What follows adds an entry
-// point. Lengths are in cells of the surface, paint in quanta: whole numbers, in f32 exact up to 2²⁴.
+// Shared parameters and buffers of the stages of steps, for all paint models. An entry point is appended. Lengths are
+// in cells of the surface, paint in quanta: whole numbers, in f32 exact up to 2²⁴.
 
 // Parameters of a step; `StepRecord` of record.rs.
 struct Step {
     // Half the width of a strip by segment.
     half_widths: array<vec4<f32>, 2>,
-    // The grid: its lower left cell in the window, its columns and rows.
+    // Grid: its lower left cell in the window, its columns and rows.
     from_x: u32,
     from_y: u32,
     width: u32,
     height: u32,
-    // The window: cells of a row and of a plane, columns and rows that lie on the surface.
+    // Window: cells of a row and of a plane, columns and rows on the surface.
     row: u32,
     plane: u32,
     limit_x: u32,
     limit_y: u32,
-    // The surface's coordinates of the grid's lower left corner.
+    // Surface coordinates of the grid's lower left corner.
     offset_x: f32,
     offset_y: f32,
     planes: u32,
     strips: u32,
     faces: u32,
     vertices: u32,
-    // Where its poses begin.
+    // Offset of its poses.
     poses: u32,
-    // Its number in the batch.
+    // Number of the step in its batch.
     number: u32,
-    // The least score that a segment can have, and how far above the highest paint on surface and
-    // brush one can be, but for what the head lies lower than it was solved.
+    // Least score of a segment, and its greatest height above the highest paint on surface and brush, without the
+    // additional sinking of the head.
     low: f32,
     span: f32,
     // Bits of a key that number the segment.
     bits: u32,
-    // How far the skin keeps off what it lies on.
+    // Distance of the skin from what it rests on.
     skin_bottom: f32,
     cells_per_quantum: f32,
     film_cells_per_quantum: f32,
@@ -41,62 +41,62 @@ struct Step {
     film_full: f32,
     refill: f32,
     creep: f32,
-    // What stays on a cell however hard it is brushed.
+    // Quanta that stay on a cell however hard it is brushed.
     stain: f32,
-    // The plane of the thinner, or NONE.
+    // Plane of the thinner, or NONE.
     thinner: u32,
-    // How paint goes over: one of PAINT, SPONGE, MARKER.
+    // Kind of transfer: PAINT, SPONGE or MARKER.
     transfer: u32,
-    // Units that a marker leaves along a reference cell.
+    // Units that a marker deposits along a reference cell.
     flow: f32,
-    // Up to so many quanta a brush leaves paint on a cell.
+    // Quanta on a cell up to which a brush deposits paint.
     most: f32,
-    // Whether paint is pushed.
+    // 1 where paint is pushed.
     push: u32,
-    // Columns and rows of the grid that may be touched; beside them paint is only pushed. Of these, the
-    // cells that what is low of the head reaches (see `inside`).
+    // Columns and rows of the grid that may be touched; elsewhere paint is only pushed. Then the cells below the low
+    // parts of the head (see `inside`).
     in_x0: u32,
     in_y0: u32,
     in_x1: u32,
     in_y1: u32,
-    // The most that a cell holds.
+    // Capacity of a cell, quanta.
     cell_max: f32,
-    // How far the head may lie lower than it was solved where it is pressed most.
+    // Greatest additional sinking of the head below its solved height.
     reach: f32,
-    // How far a strip reaches beyond its middle line.
+    // Reach of a strip beyond its middle line.
     border: i32,
-    // Whether no cell loses paint to the brush, whatever that takes up.
+    // 1 where no cell loses paint to the brush.
     lasting: u32,
-    // How far the head sinks into what it lies on, and how deep the ride is at most.
+    // Sinking of the head into what it rests on, and greatest depth of the ride.
     sink: f32,
     ride_below: f32,
-    // By how much the edges of a strip are higher than its middle.
+    // Height of a strip's edges above its middle.
     round: f32,
     // Share of the brush's motion that paint follows in a part of the step.
     follows: f32,
-    // By what paint goes over (`Exchanging` of transfer.rs): ln of what stays along a reference cell, whether
-    // the two sides even out, and the most.
+    // Parameters of transfer (`Exchanging` of transfer.rs): ln of the share kept along a reference cell, whether the
+    // two sides even out, and the greatest amount.
     ln_kept: f32,
     evens: f32,
     most_over: f32,
-    // Share of films that changes places.
+    // Share of films that is exchanged.
     swap: f32,
-    // The most quanta of a texel's film.
+    // Greatest film of a texel, quanta.
     film_most: f32,
     // Share of the difference between films that evens out in FLOW_STEPS, between strips and along them.
     seep_beside: f32,
     seep_along: f32,
-    // In so many parts paint moves, which the host dispatches; and room, so that records lie 256 bytes apart.
+    // Number of parts in which paint moves, which the host dispatches; padding, so that records lie 256 bytes apart.
     parts: vec4<u32>,
 }
 
 // A cell in contact.
 struct Contact {
-    // The brush's texel; NONE where the cell is not touched.
+    // Texel of the brush; NONE where the cell is not touched.
     texel: u32,
     cover: f32,
     moved: vec2<f32>,
-    // How deep the brush is in the wet paint, negative by the gap above it; and the depth by the paint's
+    // Depth of the brush in the wet paint, negative by the gap above it, and that depth divided by the paint's
     // thickness.
     reach: f32,
     fraction: f32,
@@ -106,11 +106,11 @@ struct Contact {
 }
 
 const NONE = 0xffffffffu;
-// What a factor of e in the share of a cell that is left open counts.
+// Fixed-point scale of −ln of the open share of a cell.
 const PER_LOG = 262144.0;
 const STATIONS = 9u;
 const TEXELS_PER_STRIP = 16u;
-// Paint moves within each strip once in so many steps, in others at another step.
+// Interval between flows of paint within a strip, steps; strips take turns.
 const FLOW_STEPS = 2u;
 const QUANTA_PER_UNIT = 16777216.0;
 const PAINT = 0u;
@@ -118,45 +118,42 @@ const SPONGE = 1u;
 const MARKER = 2u;
 
 @group(0) @binding(0) var<uniform> step: Step;
-// Poses: x, y, z in the middle of the step, and motion in x and y of all stations; by strip how far it keeps off what it lies on, and
-// its rank; x, y, z and motion of the skin's points.
+// Poses: x, y, z in the middle of the step, and motion in x and y of all stations; by strip its distance from what it
+// rests on, and its rank; x, y, z and motion of the skin's points.
 @group(0) @binding(1) var<storage, read> poses: array<f32>;
-// Faces of the skin, four points each; places of its points around and along; the strips in their
-// order around the head; the strips' capacities; the strips in two orders in which neighbours stand beside
-// each other.
+// Faces of the skin, four points each; places of its points around and along; the strips in their order around the
+// head; the strips' capacities; the strips in two orders in which neighbours are adjacent.
 @group(0) @binding(2) var<storage, read> head: array<u32>;
 // Segments as they are drawn, four vectors each.
 @group(0) @binding(3) var<storage, read_write> segments: array<vec4<f32>>;
-// Counts on the window's cells, a plane a paint; and room for as much.
+// Counts on the window's cells, a plane a paint; and an equal amount of scratch memory.
 @group(0) @binding(4) var<storage, read_write> planes: array<f32>;
 @group(0) @binding(5) var<storage, read_write> other: array<f32>;
-// Height of what catches paint; height at which a pressed bristle lies on it.
+// Height of the surface that catches paint; height at which a pressed bristle rests on it.
 @group(0) @binding(6) var<storage, read> base: array<f32>;
-// Steps with contact; then by texel the counts of all paints in the film, each paint's in the film,
-// each paint's inside.
+// Steps with contact; then by texel all paints in the film, each paint in the film, each paint inside.
 @group(0) @binding(7) var<storage, read_write> load: array<u32>;
-// By texel what is drawn and offered in the step, and how each paint's film changes; by strip whether
-// it touches and its thickest film.
+// By texel the amounts drawn and offered in the step, and the change of each paint's film; by strip whether it
+// touches, and its thickest film.
 @group(0) @binding(8) var<storage, read_write> asks: array<atomic<u32>>;
-// By cell of the grid the lowest score and its segment; then the share that all segments leave open, as
-// −ln of it by PER_LOG.
+// By cell of the grid the lowest score and its segment; then the open share of all segments, as −ln of it times
+// PER_LOG.
 @group(0) @binding(9) var<storage, read_write> keys: array<atomic<u32>>;
 @group(0) @binding(10) var<storage, read_write> contacts: array<Contact>;
 // Velocities through the right and the upper face of each cell of the grid.
 @group(0) @binding(11) var<storage, read_write> faces: array<vec2<f32>>;
-// By cell of the grid: all paint, all paint between the passes of the advection, height of what
-// catches paint, share of thinner, height of the ride.
+// By cell of the grid: all paint, all paint between the passes of the advection, height of the surface that catches
+// paint, share of thinner, height of the ride.
 @group(0) @binding(12) var<storage, read_write> totals: array<f32>;
-// Cells touched so far; wet paint and thinner that lay on them before their steps, as bits of f32, in 256
-// quanta; the highest that paint ever stood, as bits of f32, quanta. Then STEP_STATS words of each step of
-// the batch, see below.
+// Cells touched; wet paint and thinner on them before their steps, as bits of f32, in 256 quanta; the greatest height
+// of paint, as bits of f32, quanta. Then STEP_STATS words of each step of the batch, see below.
 @group(0) @binding(13) var<storage, read_write> stats: array<atomic<u32>>;
 // Workgroups of the stages that follow the footprint.
 @group(0) @binding(14) var<storage, read_write> groups: array<vec4<u32>>;
 // Quanta to the canvas and to the brush by cell of the grid; before, velocities as in `faces`.
 @group(0) @binding(15) var<storage, read_write> wants: array<vec2<f32>>;
 
-// The highest paint, cells; the thickest film and the fullest cell, quanta (as bits, none is negative).
+// The highest paint, cells; the thickest film and the fullest cell, quanta (as bits; none is negative).
 const TOP = 0u;
 const FILM = 1u;
 const FULLEST = 2u;
@@ -167,21 +164,21 @@ const STEPS = 4u;
 // Wet paint and thinner on the cells in contact, in 256 quanta.
 const WET = 5u;
 const THINNER = 6u;
-// The least and the most column and row of the grid that what is low of the head reaches: away from and
-// beside a bias, 0 where nothing is low.
+// The least and the greatest column and row of the grid below low parts of the head: as distances from a bias, 0
+// where nothing is low.
 const LEAST = 7u;
 const MOST = 9u;
 const BIAS = 65536;
 const AWAY = 60000.0;
-// The least and the most column and row of the contacts, away from a bias and from 1.
+// The least and the greatest column and row of the contacts, as distances from a bias and from 1.
 const LEAST_TOUCHED = 11u;
 const MOST_TOUCHED = 13u;
 const STEP_STATS = 20u;
 
-// Of all steps: the highest that paint ever stood.
+// The greatest height of paint over all steps.
 const TOP_EVER = 3u;
 
-// Whether it is the turn of a strip, or of a pair of them.
+// True in the step of a strip, or of a pair of strips.
 fn is_due(number: u32) -> bool {
     return (load[0] + number) % FLOW_STEPS == 0u;
 }
@@ -190,14 +187,14 @@ fn stat(which: u32) -> u32 {
     return 4u + STEP_STATS * step.number + which;
 }
 
-// Raises a statistic to at least this. Most are lower, and a look costs less than a write.
+// Raises a statistic to at least `value`. Most values are lower, and a read costs less than a write.
 fn raise(which: u32, value: u32) {
     if value > atomicLoad(&stats[which]) {
         atomicMax(&stats[which], value);
     }
 }
 
-// Notes the thickest film of a strip, if it is one, and of all.
+// Records the thickest film of a strip, if it is one, and of all.
 fn weigh_strip(strip: u32) {
     if strip >= step.strips {
         return;
@@ -210,13 +207,13 @@ fn weigh_strip(strip: u32) {
     atomicMax(&stats[stat(FILM)], thickest);
 }
 
-// Columns and rows of the grid: from, up to but not with.
+// Columns and rows of the grid, half-open.
 struct Part {
     low: vec2<u32>,
     high: vec2<u32>,
 }
 
-// The contacts and one cell more to each side, as far as the surface goes: where paint may move.
+// The contacts and one more cell on each side, within the surface: the cells where paint may move.
 fn around() -> Part {
     let least = vec2(
         atomicLoad(&stats[stat(LEAST_TOUCHED)]), atomicLoad(&stats[stat(LEAST_TOUCHED) + 1u]),
@@ -258,7 +255,7 @@ fn cell_of(x: u32, y: u32) -> u32 {
     return (step.from_y + y) * step.row + step.from_x + x;
 }
 
-// First of each part of `load` and `asks`.
+// Offset of each part of `load` and `asks`.
 fn film_of(paint: u32) -> u32 {
     return 1u + (1u + paint) * texels();
 }

@@ -1,12 +1,13 @@
-// A blend of the drawn head with the canvas below it (raster.rs, touching.rs, transfer.rs of maulstick-dab): where they
-// touch, of each side goes V·(1 − (1 − R)^T) in whole units, of all paints alike. An invocation has a cell of the head.
+// Blends the drawn head with the canvas below it (raster.rs, touching.rs, transfer.rs of maulstick-dab): where they
+// touch, V·(1 − (1 − R)^T) of each side goes over in whole units, in the same proportion for all paints. An invocation
+// has a cell of the head.
 
 // Constants of volume.rs and touching.rs.
 override UNIT: f32;
 override MOST_UNITS: f32;
 override BRIDGED: f32;
 
-// Of the workgroup: cells that touch; wet paint and thinner on them, in 16 quanta.
+// Sums of the workgroup: cells that touch; wet paint and thinner on them, in 16 quanta.
 var<workgroup> met: array<atomic<u32>, 3>;
 
 fn exponent_of(value: f32) -> i32 {
@@ -17,13 +18,13 @@ fn mantissa_of(value: f32) -> u32 {
     return (bitcast<u32>(value) & 0x7fffffu) | 0x800000u;
 }
 
-// a / b, 0 ≤ a ≤ b, rounded to the nearest as the processor rounds it: that of a device may be off by some roundings.
+// a / b, 0 ≤ a ≤ b, correctly rounded as on the processor: a device's division may be off by several roundings.
 fn quotient(a: f32, b: f32) -> f32 {
     let near = a / b;
     if near <= 0.0 {
         return 0.0;
     }
-    // What is left of a is small beside b, and so exact modulo 2³².
+    // The remainder of a is small beside b, and so exact modulo 2³².
     let shift = u32(exponent_of(a) - exponent_of(b) - exponent_of(near) + 127 + 23);
     let divisor = i32(mantissa_of(b));
     var left = i32((mantissa_of(a) << (shift & 31u)) - mantissa_of(near) * mantissa_of(b));
@@ -40,7 +41,7 @@ fn quotient(a: f32, b: f32) -> f32 {
     return near + more * bitcast<f32>(u32(exponent_of(near) - 23) << 23u);
 }
 
-// Threshold of a cell of the step's bounds, counted from the first cell of its row over which the head is.
+// Threshold of a cell of the step's bounds, counted from the first cell of its row below the head.
 fn threshold_at(at: vec2<u32>, left: u32) -> f32 {
     let row = increase(left, blend_of.across_high, blend_of.across_low)
         + increase(at.y, blend_of.up_high, blend_of.up_low);
@@ -57,7 +58,7 @@ struct Meeting {
     gap: f32,
 }
 
-// Quanta that go from the brush to the canvas, and from the canvas to the brush (`leaving` of transfer.rs).
+// Quanta from the brush to the canvas, and from the canvas to the brush (`leaving` of transfer.rs).
 fn leaving(meeting: Meeting, threshold: f32) -> vec2<f32> {
     let full = MOST_UNITS * UNIT;
     let free = min(max(meeting.brush - meeting.gap, 0.0), full);
@@ -81,8 +82,8 @@ fn film_on(paint: u32, i: u32, texel: u32, texel_cells: u32) -> f32 {
     return other[paint * cells() + i];
 }
 
-// Leaves a paint on a cell of the brush for the next blend; after the last one its texel gets what it has more than
-// it was lent.
+// Stores a paint on a cell of the brush for the next blend; after the last one its texel gets the change since it was
+// lent.
 fn leave_film(paint: u32, i: u32, texel: u32, texel_cells: u32, film: f32) {
     if (blend_of.ends & LAST) == 0u {
         other[paint * cells() + i] = film;
@@ -171,7 +172,7 @@ fn blend(
         atomicStore(&met[index], 0u);
     }
     workgroupBarrier();
-    // Columns and rows over which the head is, away from a bias and from 1: nowhere where they are 0.
+    // Columns and rows below the head, as distances from a bias and from 1: none where they are 0.
     let first = u32(BIAS) - atomicLoad(&stats[stat(LEAST_TOUCHED)]);
     let low = u32(BIAS) - atomicLoad(&stats[stat(LEAST_TOUCHED) + 1u]);
     let high = atomicLoad(&stats[stat(MOST_TOUCHED) + 1u]);

@@ -1,4 +1,4 @@
-// The head over each cell of the grid (`Drawn` of maulstick-model), and over how many of them each texel is.
+// The head over each cell of the grid (`Drawn` of maulstick-model), and the number of cells of each texel.
 
 @compute @workgroup_size(256)
 fn draw_cells(@builtin(global_invocation_id) id: vec3<u32>) {

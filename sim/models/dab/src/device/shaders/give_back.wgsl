@@ -1,4 +1,4 @@
-// Texels get what their cells hold, before the head is drawn anew. An invocation has one.
+// Returns the cells' quanta to their texels, before the head is drawn anew. An invocation has one.
 
 @compute @workgroup_size(16)
 fn give_back(@builtin(global_invocation_id) id: vec3<u32>) {

@@ -1,4 +1,4 @@
-// The head is drawn anew: it is over nothing yet.
+// Resets the drawing of the head.
 
 @compute @workgroup_size(256)
 fn next_drawing(@builtin(global_invocation_id) id: vec3<u32>) {

@@ -1,14 +1,14 @@
-// After the last blend the texels get what their cells hold; then the surfaces of strips whose turn it is are filled again
-// from their reservoirs, in whole deep units, and paint runs down them (reservoir.rs in maulstick-dab). What the step met is
-// counted. A workgroup has a strip; an invocation one of its texels, and of each some of the paints.
+// After the last blend, returns the cells' quanta to the texels; then refills the surfaces of the strips of this step
+// from their reservoirs, in whole deep units, and paint runs down them (reservoir.rs in maulstick-dab). Counts the
+// step's contacts. A workgroup has a strip; an invocation one of its texels, and some of each texel's paints.
 
 const LANES = 16u;
 
-// Quanta of each paint on the surfaces of the strip's texels, and inside: of 64 paints at most.
+// Quanta of each paint on the surfaces of the strip's texels, and inside, for at most 64 paints.
 var<workgroup> surface: array<u32, 1024>;
 var<workgroup> inside_it: array<u32, 1024>;
 
-// Adds to a sum of all steps; nobody else does.
+// Adds to a sum of all steps, without other writers.
 fn tally(sum: u32, which: u32) {
     let before = bitcast<f32>(atomicLoad(&stats[sum]));
     let more = f32(atomicLoad(&stats[stat(which)])) * WET_UNIT;
@@ -37,18 +37,18 @@ fn held(k: u32) -> vec2<f32> {
     return vec2<f32>(sums);
 }
 
-// Deep units of so much as comes on the way, in quanta.
+// Whole deep units of an amount, in quanta.
 fn deep_units(quanta: f32, first: u32, texel: u32) -> f32 {
     let threshold = first + increase(texel, blend_of.across_high, blend_of.across_low);
     return floor(blend_of.rate * quanta / blend_of.deep + threshold_of(threshold)) * blend_of.deep;
 }
 
-// What goes of a count as a share, as far as the other one has room for it.
+// Part of a count by a share, as far as the other count has room for it.
 fn part(there: u32, share: f32, other_one: u32) -> u32 {
     return min(min(u32(f32(there) * share), there), 0xffffffffu - other_one);
 }
 
-// Shares that rise from inside of a texel, and that sink into it.
+// Share that rises from inside a texel, and share that sinks into it.
 fn flow_of(strip: u32, k: u32) -> vec2<f32> {
     let holds = held(k);
     let texel = strip * TEXELS_PER_STRIP + k;
@@ -110,7 +110,7 @@ fn refill(
     let touched = atomicLoad(&stats[stat(TOUCHED)]) != 0u && blend_of.turn != NONE;
     let over = atomicLoad(&asks[touch_of(strip)]) != 0u;
     let flows = touched && over && strip % FLOW_STEPS == blend_of.turn;
-    // From the point up: what runs down in one step goes a texel far.
+    // From the point up, so that paint runs down by one texel a step.
     for (var k = TEXELS_PER_STRIP; k > 0u; k--) {
         var shares = vec2(0.0);
         if flows {

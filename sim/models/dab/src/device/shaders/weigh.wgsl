@@ -1,7 +1,7 @@
-// How thick the films on the brush are, and how high paint stands where the step may touch it (`Lying` of
-// maulstick-model). Nothing is drawn yet.
+// Thickness of the films on the brush, and height of paint where the step may touch it (`Lying` of maulstick-model).
+// Nothing is drawn yet.
 
-// All of a grid may be drawn on.
+// Opens the whole grid to drawing.
 fn open_grid() {
     for (var axis = 0u; axis < 2u; axis++) {
         atomicStore(&stats[stat(LEAST) + axis], u32(BIAS));

@@ -1,17 +1,17 @@
-// A pass of the advection along one axis: bare conservative fluxes, van Leer's slopes (1974), in whole
-// quanta. Each invocation counts what goes through the face ahead of its cell and hands it to the next
-// through the workgroup, so that both sides of a face have the same count, whoever computes it.
+// A pass of the advection along one axis: conservative fluxes, van Leer's slopes (1974), in whole quanta. Each
+// invocation counts the flux through the face ahead of its cell and passes it to the next through the workgroup, so
+// that both sides of a face have the same count.
 
-// The first pass goes from `planes` to `other`, the second one back.
+// The first pass reads `planes` and writes `other`, the second one the reverse.
 override second: u32 = 0u;
 
-// Of a column at most this share leaves, so that rounding never takes more than there is.
+// Greatest share that leaves a column, so that rounding never takes more than there is.
 const LOOSEST = 1.0 - 1.0 / 1048576.0;
 
 const COLUMNS = 32u;
 const ROWS = 8u;
 
-// What went through the faces of a workgroup's cells, four paints at a time, in turns.
+// Fluxes through the faces of a workgroup's cells, four paints at a time, in turns.
 var<workgroup> through: array<vec4<f32>, 512>;
 
 fn count(paint: u32, cell: u32) -> f32 {
@@ -29,8 +29,8 @@ fn loose(at: u32) -> f32 {
     return max(total(at) - step.stain, 0.0);
 }
 
-// The cells about a face, along the axis: the one behind it at 1. Beside those around the contacts is
-// nothing that moves, and it is as at their edge.
+// The cells about a face, along the axis: the one behind it at 1. Beyond the cells around the contacts nothing moves,
+// and values are those of their edge.
 struct Row {
     at: array<u32, 4>,
     cell: array<u32, 4>,

@@ -1,5 +1,5 @@
-// Which cells those parts of the head reach that come below all paint there ever was: low_bounds of head.rs
-// in maulstick-model. An invocation looks at one segment of a strip, or at a face of the skin.
+// Cells reached by the parts of the head below the greatest height of paint so far: low_bounds of head.rs in
+// maulstick-model. An invocation tests one segment of a strip, or a face of the skin.
 
 // Widens the bounds; places are columns or rows of the grid.
 fn widen(low: vec2<f32>, high: vec2<f32>) {

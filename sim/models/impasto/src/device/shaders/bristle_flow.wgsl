@@ -1,15 +1,15 @@
-// The films of strips that touch have what came and went. Every few steps paint moves within a
-// strip: from inside to a film that lacks some, from one that has too much inward, and along.
+// Adds the exchanged paint to the films of touching strips. Every few steps paint also moves within a strip: from
+// inside to a film that lacks some, from one with an excess inward, and along.
 
-// By this share the film of thinner alone is thinner than one of paint.
+// Share by which a film of thinner alone is thinner than one of paint.
 const RUNS_OFF = 0.7;
 
-// What of `there` goes as a share, at most `left`.
+// Part of `there` by a share, at most `left`.
 fn part(there: u32, share: f32, left: u32) -> u32 {
     return min(u32(f32(there) * share), left);
 }
 
-// Share of thinner in what a strip carries.
+// Share of thinner in a strip's paint.
 fn thinner_in(strip: u32, all: f32) -> f32 {
     if step.thinner == NONE {
         return 0.0;
@@ -39,7 +39,7 @@ fn flow_in(strip: u32) {
     }
     let thin = 1.0 - RUNS_OFF * thinner_in(strip, all);
     let full = step.film_full * bitcast<f32>(capacity) * thin;
-    // Shares of what is inside that go out, on and back, and of the film that go inward.
+    // Shares of the paint inside that go out, forward and back, and of the film that go inward.
     var out: array<f32, 16>;
     var inward: array<f32, 16>;
     var onward: array<f32, 16>;

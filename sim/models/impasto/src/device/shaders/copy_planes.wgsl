@@ -1,4 +1,4 @@
-// What the advection is measured beside: half of the planes, and of their sum, from one buffer to the other.
+// Reference of the advection's benchmark: copies half of the planes, and of their sum, from one buffer to the other.
 
 override second: u32 = 0u;
 

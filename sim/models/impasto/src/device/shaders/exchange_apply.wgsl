@@ -1,8 +1,8 @@
-// Paint goes over: what its texel grants each cell of each paint, truncated, is taken from one side and
+// Applies the exchange: the truncated amount that its texel grants each cell of each paint is taken from one side and
 // given to the other.
 
-// Where next to all of a donor is asked for, shares are short by more than rounding adds, so that no sum
-// of them exceeds what is there; elsewhere rounding takes no quantum of a whole one.
+// Threshold of a request that nearly empties a donor: above it shares are reduced by more than rounding adds, so that
+// their sum never exceeds the stock; below it rounding takes no quantum of a whole one.
 const NEXT_TO_ALL = 0.9999;
 const SHORT = 1.0 - 1.0 / 1048576.0;
 const LONG = 1.0 + 1.0 / 2097152.0;
@@ -11,7 +11,7 @@ fn rounded(share: f32, asked: f32, there: f32) -> f32 {
     return share * select(LONG, SHORT, asked > NEXT_TO_ALL * there);
 }
 
-// Notes how high paint stands where the brush was, and beside it.
+// Records the height of paint under the brush, and beside it.
 fn note_left(i: u32, total: f32) {
     let at = vec2(i % step.width, i / step.width);
     let touched = inside();
@@ -45,7 +45,7 @@ fn exchange_apply(@builtin(global_invocation_id) id: vec3<u32>) {
         granted.y = clamp(room / max(offered, 1.0), 0.0, 1.0);
     }
     let goes = wants[i] * granted;
-    // Of paint that lasts only so much leaves a cell as comes there.
+    // Lasting paint loses only the amount that arrives.
     var leaves = 1.0;
     if step.lasting != 0u && goes.y > goes.x {
         leaves = goes.x / goes.y;

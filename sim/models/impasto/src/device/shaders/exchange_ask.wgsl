@@ -1,5 +1,4 @@
-// What each cell wants of its texel and offers it (Baxter 2004, Algorithm 3, by path length), summed by
-// texel.
+// Requests of each cell to its texel, and offers to it (Baxter 2004, Algorithm 3, by path length), summed by texel.
 
 // Constants of transfer.rs in maulstick-impasto.
 override SWAP_FILM: f32;
@@ -51,7 +50,7 @@ fn exchange_ask(@builtin(global_invocation_id) id: vec3<u32>) {
     let pool = min(gap * QUANTA_PER_UNIT, POOL * step.most);
     let most = min(step.most + pool, step.cell_max);
     let room = max(most - lying, 0.0);
-    // What changes places has room on both sides, or stays on both.
+    // Exchanged paint has room on both sides, or stays on both.
     swap = min(swap * quanta, room);
     let to_canvas = trunc(min(max(net, 0.0) * quanta + swap, room));
     let to_brush = trunc(min(max(-net, 0.0) * quanta + swap, lying));

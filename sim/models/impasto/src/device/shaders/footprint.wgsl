@@ -1,5 +1,5 @@
-// Which of the covered cells are touched: where what is lowest, with its film of paint, reaches the top
-// of what lies there.
+// Covered cells that are touched: the lowest part, with its film of paint, reaches the top of the surface or paint
+// there.
 
 // Constants of velocity.rs.
 override SQUISH: f32;
@@ -7,7 +7,7 @@ override STABLE: f32;
 override SLIP: f32;
 override EASE: f32;
 
-// What is pressed down follows the ride into the valleys of the tooth, and is lifted by what stands higher.
+// A pressed part follows the ride into the valleys of the tooth, and is lifted by higher parts.
 fn lower_side(fragment: Fragment, ride: f32) -> f32 {
     let rests = max(fragment.z + min(ride, 0.0), ride);
     return rests - step.sink + fragment.off;
@@ -44,7 +44,7 @@ fn footprint(@builtin(global_invocation_id) id: vec3<u32>) {
     let thinner = totals[3u * cells() + i];
     let resists = select(0.0, wet, fraction > 0.0);
     let squish = min(SQUISH * (1.0 + EASE * thinner), STABLE / max(resists, 1e-6));
-    // What lies in gaps below the bristles stays there.
+    // Paint in gaps below the bristles stays there.
     let follows = step.follows * (1.0 - SLIP * thinner) * cover * fraction;
     contacts[i] = Contact(
         fragment.texel, cover, fragment.moved, min(reach, wet), fraction, squish, follows,

@@ -1,10 +1,10 @@
-// How many workgroups the stages after the footprint have: none where nothing is touched.
+// Number of workgroups of the stages after the footprint: none where nothing is touched.
 
 fn covering(cells: u32, each: u32) -> u32 {
     return (cells + each - 1u) / each;
 }
 
-// Adds to a sum of all steps; nobody else does.
+// Adds to a sum of all steps, without other writers.
 fn tally(sum: u32, which: u32) {
     let before = bitcast<f32>(atomicLoad(&stats[sum]));
     let more = f32(atomicLoad(&stats[stat(which)]));
@@ -35,7 +35,7 @@ fn plan_step() {
     for (var second = 0u; second < 2u; second++) {
         var size = vec4(0u);
         if step.push != 0u {
-            // A workgroup's first cells along the way are only looked at.
+            // A workgroup's first cells along the axis are only read.
             let tile = select(vec2(31u, 8u), vec2(32u, 7u), along_y(second, steps));
             size = vec4(covering(step.width, tile.x), covering(step.height, tile.y), 1u, 0u);
         }

@@ -1,9 +1,9 @@
-// Paint between bristles: where a film has become thinner than the one beside it, so much of the fuller one
-// seeps over that they even out (seep.rs in maulstick-impasto). An invocation evens out two texels.
+// Flow of paint between bristles: from a fuller film to a thinner one beside it, up to their mean (seep.rs in
+// maulstick-impasto). An invocation evens out two texels.
 
-// The first pass goes between strips that stand beside each other, the second one along each strip.
+// The first pass goes between neighbouring strips, the second one along each strip.
 override second: u32 = 0u;
-// Difference between the films of two strips that stays, by a full film (model.rs).
+// Difference between the films of two strips that remains, as a share of a full film (model.rs).
 override HOLDS: f32;
 
 fn even_out(a: u32, b: u32, part: f32, holds: f32) {

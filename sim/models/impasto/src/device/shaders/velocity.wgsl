@@ -1,5 +1,5 @@
-// Where the paint under the brush goes: through the right and the upper face of each cell. Paint
-// follows the brush, and is pressed aside down the gradient of the penetration.
+// Velocity of the paint under the brush through the right and the upper face of each cell. Paint follows the brush, and
+// is pressed aside down the gradient of the penetration.
 
 struct Side {
     touched: bool,
@@ -26,7 +26,7 @@ fn side_of(at: vec2<i32>, axis: u32) -> Side {
     );
 }
 
-// Through the face between two cells, the second of them on the surface or not.
+// Velocity through the face between two cells; the second may be beside the surface.
 fn through(i: Side, j: Side, on_surface: bool) -> f32 {
     if !on_surface || !(i.touched || j.touched) {
         return 0.0;
@@ -41,7 +41,7 @@ fn through(i: Side, j: Side, on_surface: bool) -> f32 {
     return select(0.0, v, select(j.touched, i.touched, v > 0.0));
 }
 
-// Through the face of a cell toward the next along an axis; what leaves a cell is at most all.
+// Velocity through the face of a cell toward the next along an axis; a cell loses at most all it has.
 fn face_velocity(at: vec2<i32>, axis: u32) -> f32 {
     var ahead = vec2(1, 0);
     var last = i32(step.limit_x) - i32(step.from_x) - 1;

@@ -1,4 +1,4 @@
-// How thick the films on the brush are.
+// Thickness of the films on the brush.
 
 @compute @workgroup_size(64)
 fn weigh_films(@builtin(global_invocation_id) id: vec3<u32>) {

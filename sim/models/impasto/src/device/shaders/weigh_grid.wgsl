@@ -1,4 +1,4 @@
-// What lies on each cell of the grid, and how high it stands where it may be touched.
+// Paint on each cell of the grid, and its height where it may be touched.
 
 @compute @workgroup_size(256)
 fn weigh_grid(@builtin(global_invocation_id) id: vec3<u32>) {

@@ -1,10 +1,10 @@
 //! Levelling on coarser grids, each cell the mean of four.
 //!
-//! On cells of side a, an explicit round is stable only for mobilities up to a bound (`STABLE`), and the rounds that
-//! level a wave grow with the fourth power of its length in cells. A grid twice as coarse bears sixteen times the flow.
-//! It leaves out the mobility that the finer grid has used, so each share of the flow counts once. A flux through a
-//! coarse face goes through the fine faces on it; a fine face halfway between two coarse ones gets their mean. So volumes
-//! are kept, and the two cells between change alike.
+//! On cells of side a, an explicit round is stable only for mobilities up to a bound (`STABLE`), and the number of
+//! rounds that level a wave grows with the fourth power of its length in cells. A grid twice as coarse allows sixteen
+//! times the flow. The mobility used by the finer grid is subtracted, so each share of the flow counts once. A flux
+//! through a coarse face is split over the fine faces on it; a fine face halfway between two coarse ones gets their
+//! mean. So volumes are conserved, and the two cells between change alike.
 
 use maulstick_canvas::window::Area;
 use maulstick_num::select::{larger, smaller};
@@ -12,14 +12,14 @@ use maulstick_num::select::{larger, smaller};
 use super::{BLOCK, HALO, LARGEST_SHARE, Levelling, Round};
 
 impl Round {
-    /// The round on cells twice as large, without what the finer ones bear.
+    /// The round on cells twice as large, less the mobility of the finer ones.
     fn twice(&self) -> Self {
         Self {
             tension: 0.5 * self.tension,
             weight: 2.0 * self.weight,
             most: 2.0 * self.most,
-            // Heights in cells halve on the coarser grid, and mobility goes with their cube: the finer grid's bound is
-            // 1/8.
+            // Heights in cells halve on the coarser grid, and mobility is proportional to their cube: the finer grid's
+            // bound is 1/8.
             finer: 0.125 * self.most,
             coarser: self.coarser - 1,
             to_cells: 0.5 * self.to_cells,
@@ -56,7 +56,7 @@ impl Levelling {
     fn halved(&self, area: &Area, twice: &Area) -> Self {
         let width = twice.size[0] + 2 * HALO;
         let height = twice.size[1] + 2 * HALO;
-        // Beyond the halo it goes on as at its edge.
+        // Beyond the halo values are those of its edge.
         let fine = |coarse: usize, axis: usize| {
             let last = area.size[axis] + 2 * HALO - 1;
             [0, 1].map(|of| (2 * coarse + of).saturating_sub(HALO).min(last))
@@ -85,8 +85,7 @@ impl Levelling {
         }
     }
 
-    /// Lays the sums of what flowed on the coarser grid into the flows of the finer one; through bare cells nothing
-    /// goes.
+    /// Adds the flows of the coarser grid to those of the finer one, except through bare cells.
     fn take_flows(&mut self, area: &Area, coarse: &Self, bare: f32) {
         for (axis, next) in [1, self.width].into_iter().enumerate() {
             let beside = [1, coarse.width][axis];

@@ -42,7 +42,7 @@ fn exact(half: f64, plug: f64, from_middle: f64) -> f64 {
     0.5 * (whole - here)
 }
 
-/// One channel: velocity by the fastest across, height by the channel's upward.
+/// One channel: velocity, relative to the fastest, across; height upward.
 fn panel(image: &mut Image, left: f64, computed: &[f64], plug: f64) {
     let cells = computed.len() as f64;
     let half = 0.5 * cells;

@@ -126,7 +126,7 @@ impl Image {
         }
     }
 
-    /// Puts another image with its left upper corner at a place.
+    /// Copies another image to a place, its left upper corner.
     pub(crate) fn paste(&mut self, other: &Self, left: usize, top: usize) {
         for y in 0..other.height {
             for x in 0..other.width {

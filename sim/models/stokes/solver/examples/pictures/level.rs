@@ -1,7 +1,7 @@
-//! A thinned pool that levels under its weight: heights in mm over 16 mm at the left, from the first (dark) to the last; at
-//! the right what is left of the swell over seconds (rings) beside exp(−σt) (line), with
-//! σ = g/(2νk)·(sinh kh·cosh kh − kh)/(cosh² kh + (kh)²) for a viscous layer of depth h (Orchard 1963, with weight in place of
-//! surface tension).
+//! A thinned pool that levels under its weight: heights in mm over 16 mm at the left, from the first (dark) to the
+//! last; at the right the remaining swell over time in seconds (rings) and exp(−σt) (line), with σ = g/(2νk)·(sinh
+//! kh·cosh kh − kh)/(cosh² kh + (kh)²) for a viscous layer of depth h (Orchard 1963, with weight in place of surface
+//! tension).
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -16,7 +16,7 @@ use crate::image::{BLUE, Image, RED, viridis};
 use crate::plot::Axes;
 use crate::{CAPACITY, Drawn};
 
-/// One swell, its depth and height above it, cells.
+/// Length, depth and height of the swell, cells.
 const LENGTH: usize = 128;
 const DEPTH: f64 = 16.4;
 const SWELL: f64 = 2.4;

@@ -1,6 +1,6 @@
-//! A blunt blade is pushed sideways through paint and then drawn out endwise with the paint in its cells: stiff paint at
-//! the left keeps the ridge that overhangs, paint without a yield stress at the right sinks. Slices from above downward; the
-//! last three are right after the blade has gone, half a second and two seconds later.
+//! A blunt blade is pushed sideways through paint and then drawn out endwise with the paint in its cells: stiff paint
+//! at the left keeps the ridge that overhangs, paint without a yield stress at the right sinks. Slices from above
+//! downward; the last three show the paint just after the blade, half a second and two seconds later.
 
 use std::path::Path;
 
@@ -19,9 +19,9 @@ const CELLS: [usize; 3] = [96, 1, 28];
 const ZOOM: usize = 5;
 const RADIUS: f32 = 3.5;
 const LENGTH: f32 = 80.0;
-/// Cells that the blade goes in a step.
+/// Motion of the blade in a step, cells.
 const WAY: f32 = 0.5;
-/// Steps until the blade stands, until it has been drawn out, and those that are drawn.
+/// Steps until the blade stops, until it has been drawn out, and steps that are drawn.
 const ALONG: usize = 70;
 const GONE: usize = 80;
 const STEPS: [usize; 6] = [0, 35, 70, 80, 130, 280];
@@ -49,8 +49,8 @@ fn body(step: usize) -> Vec<Rod> {
     if step < GONE { vec![rod] } else { Vec::new() }
 }
 
-/// Takes the paint away that is in the blade's cells, where transport leaves some of what it overtakes; returns how much,
-/// cells.
+/// Removes the paint in the blade's cells, where transport leaves some of the paint that it overtakes; returns its
+/// amount, cells.
 fn take_along(stokes: &mut Stokes) -> f64 {
     let grid = stokes.volume.grid;
     let mut solids = stokes.base.clone();
@@ -83,7 +83,7 @@ fn overhangs(stokes: &Stokes) -> usize {
     (0..CELLS[0]).filter(column).count()
 }
 
-/// Draws where half of a cell is filled.
+/// Draws the contour of half-filled cells.
 fn surface(stokes: &Stokes, image: &mut Image) {
     let grid = stokes.volume.grid;
     let [width, _, depth] = CELLS;
@@ -91,7 +91,7 @@ fn surface(stokes: &Stokes, image: &mut Image) {
         let place = grid.at([x as isize, 0, z as isize]);
         f64::from(stokes.volume.paints[0][place]) / f64::from(CAPACITY)
     };
-    // Middles of cells are the corners of this.
+    // Middles of cells are the corners of this field.
     let fill = Corners::new([width - 1, depth - 1], |[x, z]| filled(x, z));
     let axes = Axes {
         area: [0.0, 0.0, (ZOOM * width) as f64, (ZOOM * depth) as f64],

@@ -44,7 +44,7 @@ impl Corners {
     }
 }
 
-/// Stream function ψ, u = ∂ψ/∂z, of the plane y = 0: what flows through the faces below each corner.
+/// Stream function ψ, u = ∂ψ/∂z, of the plane y = 0: the flow through the faces below each corner.
 pub(crate) fn stream(flow: &Flow) -> Corners {
     let [width, _, depth] = flow.grid.cells;
     let mut below = vec![0.0; width + 1];
@@ -61,7 +61,7 @@ pub(crate) fn stream(flow: &Flow) -> Corners {
     }
 }
 
-/// Speed in the plane y = 0 between a still floor and a lid of a velocity, both of which paint sticks to.
+/// Speed in the plane y = 0 between a still floor and a moving lid, to both of which paint sticks.
 pub(crate) fn speed(flow: &Flow, lid: impl Fn(usize) -> [f64; 2]) -> Corners {
     let grid = &flow.grid;
     let [width, _, depth] = grid.cells;
@@ -82,7 +82,7 @@ pub(crate) fn speed(flow: &Flow, lid: impl Fn(usize) -> [f64; 2]) -> Corners {
     })
 }
 
-/// Share of each cell of the plane y that bodies and paints fill.
+/// Share of each cell of the plane y filled by bodies and paints.
 pub(crate) fn paints(stokes: &Stokes, brush: &[Rod], y: isize, zoom: usize) -> Image {
     let grid: Grid = stokes.volume.grid;
     let [width, _, depth] = grid.cells;

@@ -1,5 +1,5 @@
-//! Squeeze film under a long plate that comes down: speed and stream lines above, in which heights are drawn four times as
-//! large; below it the pressure on the plate (rings) beside Reynolds' 6μV(L² − x²)/h³ (line), by the largest of it.
+//! Squeeze film under a long plate that comes down. Above: speed and stream lines, with heights enlarged four times;
+//! below: the pressure on the plate (rings) and Reynolds' 6μV(L² − x²)/h³ (line), relative to its maximum.
 
 use std::path::Path;
 

@@ -7,7 +7,7 @@ use crate::grid::others;
 use crate::runs::share;
 use crate::stencil::Span;
 
-/// Of faces beside an edge: those that are unknowns, those of solids, and their distances; the near and the far one.
+/// The near and the far face beside an edge: masks of unknowns and of solids, and distances.
 struct Pair<'a> {
     free: [&'a [f32]; 2],
     solid: [&'a [f32]; 2],
@@ -39,7 +39,7 @@ impl<'a> Pair<'a> {
         } else {
             LEAST_DISTANCE
         };
-        // The grid's own side lies in the middle.
+        // The grid's own side is in the middle.
         let distance = if solid > TOUCHES { 0.5 } else { share };
         let is_wall = self.free[0][i] * self.solid[1][i] + self.free[1][i] * self.solid[0][i];
         if is_wall > 0.0 { distance } else { 1.0 }
@@ -56,7 +56,7 @@ impl<'a> Pair<'a> {
 }
 
 wide! {
-    /// The velocities along the first axis lie beside each other along the second.
+    /// Shares and slopes of edges; the velocities along the first axis are neighbours along the second.
     fn edges_flat(share: &mut [f32], slope: [&mut [f32]; 2], domain: &Domain, fill: &[f32], axes: [usize; 2], span: Span) {
         let [a, b] = axes;
         let by = [1, span.row, span.plane];

@@ -23,7 +23,7 @@ wide! {
     }
 }
 
-/// Distance of each face across an axis from solids, those that belong to one, and the open part of the others.
+/// Distance of each face across an axis from solids, mask of the faces of solids, and open part of the others.
 pub(super) fn find_faces(grid: &Grid, axis: usize, corners: &[f32], fields: [&mut Vec<f32>; 3]) {
     let by = others(axis).map(|axis| grid.stride(axis));
     let last = grid.len() - by[0] - by[1];

@@ -1,11 +1,11 @@
-//! Domain of the equations: the cells and faces of a window that take part, and how much of each.
+//! Domain of the equations: the cells and faces of a window that take part, with their volume fractions.
 //!
-//! A cell is filled to a fraction; the average over cells beside a face or around an edge is how much of the face's or
-//! edge's volume is paint (Batty and Bridson 2008; Larionov, Batty and Bridson 2017). An edge at which one of the four
-//! velocities is of air takes up no shear: that is the free surface's natural condition.
+//! A cell is filled to a fraction; the average over cells beside a face or around an edge is the fraction of paint in
+//! the face's or edge's volume (Batty and Bridson 2008; Larionov, Batty and Bridson 2017). An edge with a velocity of
+//! air transmits no shear: that is the free surface's natural condition.
 //!
-//! Solids are given by their distance, so that a wall between two faces is where it is: a velocity at distance θ from a
-//! wall has (u − u_wall)/θ as its gradient, over a volume of θ. For a wall in the middle that is a reflected ghost.
+//! Solids are given by their distance, so that a wall may be anywhere between two faces: a velocity at distance θ from
+//! a wall has (u − u_wall)/θ as its gradient, over a volume of θ. For a wall in the middle that is a reflected ghost.
 
 mod edges;
 mod faces;
@@ -17,13 +17,13 @@ use crate::grid::Grid;
 use crate::runs::share;
 use crate::stencil::Span;
 
-/// Fill of a cell from which on it resists pressure.
+/// Fill from which a cell resists pressure.
 pub const LEAST_FILL: f32 = 0.1;
 /// Smallest mass of a face.
 const LEAST_MASS: f32 = 0.05;
 /// Smallest distance of a velocity from a wall, in cells.
 const LEAST_DISTANCE: f32 = 0.1;
-/// Distance where no solid is near, cells.
+/// Solids in a window.
 const FAR_CELLS: f32 = 64.0;
 /// Distance at which a face belongs to a solid.
 const TOUCHES: f32 = 1e-4;
@@ -31,17 +31,17 @@ const TOUCHES: f32 = 1e-4;
 /// Solids in a window.
 #[derive(Clone, Debug)]
 pub struct Solids {
-    /// Distance of each lower corner from the nearest solid, cells; negative inside. The grid's sides do not count.
+    /// Distance of each lower corner from the nearest solid, cells; negative inside. The grid's sides are left out.
     pub distance: Vec<f32>,
     /// Velocity of the solid at each face, by axis, m/s.
     pub velocity: [Vec<f32>; 3],
-    /// Resistance of bristles at each face, by axis: h²/K with K their permeability. They move with `velocity`, and paint goes
-    /// through them (Brinkman 1949). None where there are no bristles.
+    /// Resistance of bristles at each face, by axis: h²/K with K their permeability. They move with `velocity`, and
+    /// paint flows through them (Brinkman 1949). `None` without bristles.
     pub resistance: Option<[Vec<f32>; 3]>,
 }
 
 impl Solids {
-    /// None but the grid's own sides, at rest.
+    /// Only the grid's own sides, at rest.
     #[must_use]
     pub fn walls(grid: &Grid) -> Self {
         Self {
@@ -51,7 +51,7 @@ impl Solids {
         }
     }
 
-    /// Becomes as others are, in the same room.
+    /// Copies others into the same buffers.
     pub fn copy_from(&mut self, others: &Self) {
         self.distance.clone_from(&others.distance);
         for (into, from) in self.velocity.iter_mut().zip(&others.velocity) {
@@ -60,7 +60,7 @@ impl Solids {
         self.resistance.clone_from(&others.resistance);
     }
 
-    /// Adds a solid by its distance from each corner, which is given in cells.
+    /// Adds a solid by its distance from each corner, as a function of the corner's place in cells.
     pub fn add(&mut self, grid: &Grid, distance: impl Fn([f32; 3]) -> f32) {
         for (place, near) in self.distance.iter_mut().enumerate() {
             *near = near.min(distance(grid.cell(place).map(|at| at as f32)));
@@ -91,7 +91,7 @@ impl Solids {
         shares
     }
 
-    /// The same, into a field.
+    /// Open share of each cell, written into a field.
     pub fn open_into(&self, grid: &Grid, shares: &mut [f32]) {
         let by = [0, 1, 2].map(|axis| grid.stride(axis));
         let last = grid.len() - by.iter().sum::<usize>();
@@ -107,37 +107,38 @@ impl Solids {
     }
 }
 
-/// Part that a face has in the flow.
+/// Role of a face in the flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// Nothing that flows is beside it.
+    /// A face of air without paint beside it.
     Air,
-    /// It moves as a solid does.
+    /// A face that moves with a solid.
     Solid,
-    /// Its velocity is an unknown.
+    /// A face whose velocity is an unknown.
     Paint,
 }
 
-/// Cells, faces and edges of a window as the equations see them, in cells.
+/// Cells, faces and edges of a window in the equations; lengths are in cells.
 #[derive(Clone, Debug)]
 pub struct Domain {
     /// The grid.
     pub grid: Grid,
     /// 1 for a cell with a pressure, otherwise 0.
     pub wet: Vec<f32>,
-    /// 1 for a face that moves as a solid does, otherwise 0.
+    /// 1 for a face that moves with a solid, otherwise 0.
     pub solid: [Vec<f32>; 3],
     /// 1 for a face whose velocity is an unknown, otherwise 0.
     pub free: [Vec<f32>; 3],
     /// Open part of a face whose velocity is an unknown, otherwise 0.
     pub area: [Vec<f32>; 3],
-    /// Share of a face's volume that is paint; 0 where its velocity is none.
+    /// Share of paint in a face's volume; 0 where its velocity is not an unknown.
     pub mass: [Vec<f32>; 3],
-    /// Share of a cell that is paint; 0 where it has no pressure.
+    /// Share of paint in a cell; 0 where it has no pressure.
     pub volume: Vec<f32>,
-    /// Share of an edge's volume that is sheared paint; edge a runs along axis a.
+    /// Share of sheared paint in an edge's volume; edge a runs along axis a.
     pub edge: [Vec<f32>; 3],
-    /// Of each edge, the inverses of the distances between the velocities of the two [other](crate::grid::others) axes.
+    /// For each edge, the inverses of the distances between the velocities of the two [other](crate::grid::others)
+    /// axes.
     pub slope: [[Vec<f32>; 2]; 3],
     /// Distance of each face from the nearest solid, by axis.
     near: [Vec<f32>; 3],
@@ -146,7 +147,7 @@ pub struct Domain {
 }
 
 impl Domain {
-    /// The window with cells filled to a fraction of what the solids leave open; below the least fill a cell is air.
+    /// The domain of a window; `fill` is the share of each cell's open volume, and a cell below the least fill is air.
     #[must_use]
     pub fn new(grid: &Grid, fill: &[f32], solids: &Solids, least: f32) -> Self {
         let mut domain = Self::empty(grid);
@@ -179,7 +180,7 @@ impl Domain {
         }
     }
 
-    /// The same in room that there is. The grid may be the lower layers of that of the fields.
+    /// Recomputes the domain in the same buffers. The grid may be the lower layers of that of the fields.
     pub fn renew(&mut self, grid: &Grid, fill: &[f32], solids: &Solids, least: f32) {
         for slope in self.slope.as_flattened_mut() {
             slope.resize(grid.len(), 0.0);
@@ -187,7 +188,7 @@ impl Domain {
         self.find(grid, (fill, least), solids, Self::find_edges);
     }
 
-    /// Finds cells and faces, then, with the wrapped fill, what else is wanted.
+    /// Computes cells and faces, then, with the wrapped fill, the other requested fields.
     fn find(
         &mut self,
         grid: &Grid,
@@ -249,7 +250,7 @@ impl Domain {
         self.wrapped = (fill, corners);
     }
 
-    /// Part that a face has.
+    /// Role of a face.
     #[must_use]
     pub fn part(&self, axis: usize, face: usize) -> Part {
         if self.free[axis][face] > 0.0 {
@@ -262,7 +263,7 @@ impl Domain {
     }
 }
 
-/// Calls for each axis with its parts of fields, on as many cores as there are.
+/// Calls for each axis with its parts of fields, on all cores.
 fn by_axis<const N: usize>(
     mut fields: [&mut [Vec<f32>; 3]; N],
     work: impl Fn(usize, [&mut Vec<f32>; N]) + Sync,
@@ -335,6 +336,6 @@ fn open<const N: usize>(corners: [f32; N]) -> f32 {
         positive += if distance > 0.0 { distance } else { 0.0 };
     }
     let share = if all > 0.0 { positive / all } else { 0.0 };
-    // Nothing is near.
+    // No solid is near.
     if corners[0] > 2.0 { 1.0 } else { share }
 }

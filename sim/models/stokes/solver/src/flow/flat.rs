@@ -4,11 +4,11 @@ use maulstick_num::wide;
 
 use crate::stencil::Span;
 
-/// Part of a cell that it may be fuller or emptier than full.
+/// Tolerated excess or deficit of a cell, as a share of its volume.
 const SLACK: f32 = 1e-3;
 
 wide! {
-    /// Velocities of solids where they are, of paint as they were, 0 in air.
+    /// Velocities of solids at their faces, of paint unchanged, 0 in air.
     pub(super) fn choose(u: &mut [f32], free: &[f32], solid: &[f32], of_solid: &[f32]) {
         let n = u.len();
         let (free, solid, of_solid) = (&free[..n], &solid[..n], &of_solid[..n]);
@@ -20,7 +20,7 @@ wide! {
 }
 
 wide! {
-    /// Multiplies a field where it is wet; elsewhere it is 0.
+    /// Multiplies a field in wet cells; elsewhere it is 0.
     pub(super) fn rescale(field: &mut [f32], wet: &[f32], by: f32) {
         let wet = &wet[..field.len()];
         for i in 0..field.len() {
@@ -30,7 +30,7 @@ wide! {
 }
 
 wide! {
-    /// Adds what wet cells have too much of, and those that lie within the paint lack.
+    /// Adds the excess of wet cells, and the deficit of those within the paint.
     pub(super) fn relieve(displaced: &mut [f32], wet: &[f32], fill: &[f32], per_step: f32, span: Span) {
         let (west, east) = (span.before(wet, 1), span.after(wet, 1));
         let (south, north) = (span.before(wet, span.row), span.after(wet, span.row));

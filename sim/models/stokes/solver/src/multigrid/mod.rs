@@ -1,9 +1,10 @@
 //! Multigrid of seven-point operators on irregular domains, and conjugate gradients that it preconditions (Tatebe 1993;
 //! McAdams, Sifakis and Teran 2010).
 //!
-//! Coarse operators are those of coarse cells: links in series and side by side, and half of every link to a known place
-//! that falls within a coarse cell. Values are interpolated by lines between the places that there are, so that a wall
-//! without a value (Neumann) does not pull at them. A level is smoothed by a Chebyshev polynomial before and after; polynomials of one matrix commute, so the cycle is symmetric. All numbers of steps are fixed.
+//! Coarse operators are those of coarse cells: links in series and in parallel, and half of every link to a known place
+//! within a coarse cell. Values are interpolated linearly between existing places, so that a wall without a value
+//! (Neumann) does not affect them. A level is smoothed by a Chebyshev polynomial before and after; polynomials of one
+//! matrix commute, so the cycle is symmetric. All iteration counts are fixed.
 
 mod transfer;
 
@@ -14,12 +15,12 @@ use crate::grid::Grid;
 use crate::stencil::Stencil;
 use crate::vector::{add_scaled, dot_in, scale_and_add};
 
-/// Steps of smoothing: inverses of the roots of a Chebyshev polynomial on [1/3, 2], where the spectrum of D⁻¹A lies that
-/// no coarser grid sees.
+/// Steps of smoothing: inverses of the roots of a Chebyshev polynomial on [1/3, 2], the part of the spectrum of D⁻¹A
+/// that no coarser grid resolves.
 const SMOOTHING: [f32; 2] = [0.569_5, 1.732];
-/// Steps on the coarsest grid: Chebyshev on [1/50, 2].
+/// Number of steps on the coarsest grid: Chebyshev on [1/50, 2].
 const COARSEST_STEPS: usize = 16;
-/// Cells of an axis of the coarsest grid at most, if it can be halved so far.
+/// Greatest number of cells along an axis of the coarsest grid, if it can be halved down to that.
 const COARSEST_CELLS: usize = 4;
 
 /// A grid of the hierarchy.
@@ -30,9 +31,8 @@ struct Level {
     /// Solution and right-hand side, on all but the first level.
     x: Vec<f32>,
     b: Vec<f32>,
-    /// Workspace, 0 where there are no unknowns.
+    /// Scratch field, 0 where there are no unknowns.
     spare: Vec<f32>,
-    /// Layers with unknowns.
     layers: Layers,
     /// Transfer of this level to the next; `None` on the coarsest.
     down: Option<Down>,
@@ -44,7 +44,7 @@ struct Down {
     along: [Along; 3],
     grids: [Grid; 3],
     fields: [Vec<f32>; 2],
-    /// Scale of interpolated values: the inverse of the weights of the places that there are.
+    /// Scale of interpolated values: the inverse of the weights of the existing places.
     scale: Vec<f32>,
 }
 
@@ -58,7 +58,7 @@ pub struct Multigrid {
     gradients: [Vec<f32>; 4],
 }
 
-/// Part of the right-hand side at which a residual is rounding.
+/// Share of the right-hand side at which a residual is rounding.
 const ROUNDING: f64 = 1e-8;
 
 impl Down {
@@ -144,7 +144,7 @@ impl Down {
         self.scale = scale;
     }
 
-    /// Mass, and half of the links with known places that fall within one coarse cell, by the place that is an unknown.
+    /// Mass, and half of the links with known places within one coarse cell, by the place that is an unknown.
     fn lost_links(&self, grid: &Grid, fine: &Stencil, lost: &mut [f32]) {
         lost.copy_from_slice(&fine.mass);
         let rows = grid.len() / grid.stride(1);
@@ -196,7 +196,7 @@ wide! {
 }
 
 wide! {
-    /// The same along a row that begins with its first cell.
+    /// Lost links along a row that begins with its first cell.
     fn lose_along(lost: &mut [f32], links: &[f32], active: &[f32], cells: usize) {
         let pairs = lost.as_chunks_mut::<2>().0.iter_mut();
         let links = links.as_chunks::<2>().0;
@@ -210,7 +210,7 @@ wide! {
     }
 }
 
-/// Inverses of the roots of the Chebyshev polynomial on [1/50, 2], large and small in turn so that rounding stays small.
+/// Inverses of the roots of the Chebyshev polynomial on [1/50, 2], large and small in turn to keep rounding small.
 fn coarsest_omegas() -> [f32; COARSEST_STEPS] {
     let (low, high) = (0.02, 2.0);
     let mut order = [0; COARSEST_STEPS];
@@ -230,7 +230,7 @@ fn coarsest_omegas() -> [f32; COARSEST_STEPS] {
 }
 
 impl Multigrid {
-    /// The hierarchy of an operator whose values lie in the middle of cells, or on the faces across an axis.
+    /// The hierarchy of an operator whose values are in the middle of cells, or on the faces across an axis.
     #[must_use]
     pub fn new(grid: &Grid, stencil: Stencil, faces: Option<usize>) -> Self {
         let mut multigrid = Self::empty(grid, faces);
@@ -239,7 +239,7 @@ impl Multigrid {
         multigrid
     }
 
-    /// A hierarchy of grids whose [operator](Self::stencil_mut) is still to be written.
+    /// A hierarchy whose [operator](Self::stencil_mut) is still to be written.
     #[must_use]
     pub fn empty(grid: &Grid, faces: Option<usize>) -> Self {
         let along = [0, 1, 2].map(|axis| {
@@ -293,7 +293,7 @@ impl Multigrid {
         }
     }
 
-    /// Finds the diagonal of the operator, and that of each coarser grid.
+    /// Computes the diagonal of the operator, and that of each coarser grid.
     pub fn renew(&mut self) {
         let mut rest = self.levels.as_mut_slice();
         if let Some(first) = rest.first_mut() {
@@ -319,13 +319,13 @@ impl Multigrid {
         }
     }
 
-    /// The operator.
+    /// Operator on the finest grid.
     #[must_use]
     pub fn stencil(&self) -> &Stencil {
         &self.levels[0].stencil
     }
 
-    /// The operator, to be written; [`renew`](Self::renew) takes it up.
+    /// Operator on the finest grid, for writing; [`renew`](Self::renew) then updates the hierarchy.
     #[must_use]
     pub fn stencil_mut(&mut self) -> &mut Stencil {
         &mut self.levels[0].stencil
@@ -336,8 +336,8 @@ impl Multigrid {
         descend(&mut self.levels, &self.omegas, b, x);
     }
 
-    /// Solves A·x = b by `iterations` of preconditioned conjugate gradients from x, which is 0 where there are no unknowns;
-    /// returns the norm of each residual, with that of the first guess.
+    /// Solves A·x = b by `iterations` of preconditioned conjugate gradients from x, which is 0 where there are no
+    /// unknowns; returns the norm of each residual, the first guess's included.
     pub fn solve(&mut self, b: &[f32], x: &mut [f32], iterations: usize) -> Vec<f64> {
         let grid = self.levels[0].grid;
         let [mut r, mut z, mut q, mut p] = std::mem::take(&mut self.gradients);
@@ -355,7 +355,7 @@ impl Multigrid {
         while norms.len() <= iterations && norms[norms.len() - 1] > rounding {
             self.cycle(&r, &mut z);
             let now = dot_in(&runs, &r, &z);
-            // Rounding has the last word: what is left is none.
+            // The residual has reached rounding.
             if !now.is_finite() || now <= 0.0 {
                 break;
             }
@@ -379,8 +379,8 @@ impl Multigrid {
         norms
     }
 
-    /// Solves A·x = b in f64 down to a part of the norm of b: rounds of conjugate gradients in f32 on what is left, at
-    /// most this number. Returns the part that is left.
+    /// Solves A·x = b in f64 down to a share of the norm of b: up to `rounds` rounds of conjugate gradients in f32 on
+    /// the residual. Returns the remaining share.
     pub fn refine(&mut self, b: &[f64], x: &mut [f64], part: f64, rounds: usize) -> f64 {
         let grid = self.levels[0].grid;
         let squares = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>().sqrt();
@@ -404,7 +404,7 @@ impl Multigrid {
         left
     }
 
-    /// Takes the mean out of a residual that a constant cannot answer.
+    /// Removes the mean of a residual, which no solution reduces.
     fn level_out(&self, r: &mut [f32]) {
         let active = &self.stencil().active;
         let range = self.levels[0].grid.places();
@@ -435,7 +435,7 @@ fn is_singular(grid: &Grid, stencil: &Stencil) -> bool {
     })
 }
 
-/// Layers in which unknowns lie.
+/// Layers that contain unknowns.
 fn layers(grid: &Grid, stencil: &Stencil) -> Layers {
     let [row, plane] = [1, 2].map(|axis| grid.stride(axis));
     let mut layers = [(); 2].map(|()| usize::MAX..usize::default());

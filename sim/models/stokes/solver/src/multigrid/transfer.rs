@@ -1,9 +1,9 @@
-//! Between a grid and one half as fine, one axis after the other.
+//! Transfer between a grid and one half as fine, one axis after the other.
 //!
 //! Coarse cell C covers the fine cells 2C and 2C + 1. Along the axis across which a component's faces lie, coarse face C is
 //! the fine face 2C, so values there are interpolated between nodes; everywhere else between middles of cells.
 //!
-//! Fields are wrapped on both sides, so what is found of layers beyond the sides is right too.
+//! Fields are wrapped on both sides, so the values of layers beyond the sides are right too.
 
 use std::ops::Range;
 
@@ -11,12 +11,11 @@ use maulstick_num::wide;
 
 use crate::grid::{Ends, Grid};
 
-/// Where values lie along an axis.
+/// Positions of values along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Along {
     /// In the middle of cells.
     Middles,
-    /// On faces.
     Faces,
 }
 
@@ -48,7 +47,7 @@ impl Along {
         }
     }
 
-    /// Children.
+    /// Weights of the children.
     pub(crate) const fn children(self) -> Weights {
         match self {
             Self::Middles => [0.0, 1.0, 1.0, 0.0],
@@ -74,16 +73,16 @@ pub(crate) fn halved(grid: &Grid, axis: usize) -> Grid {
     coarse
 }
 
-/// True if an axis can be halved: what is periodic must have an even number of cells.
+/// True if an axis can be halved: a periodic one must have an even number of cells.
 pub(crate) fn can_halve(grid: &Grid, axis: usize) -> bool {
     let cells = grid.cells[axis];
     cells > 1 && (cells.is_multiple_of(2) || grid.ends[axis] != Ends::Periodic)
 }
 
-/// Layers of the two upper axes, y and z, counted from the first of the field on.
+/// Layers of the two upper axes, y and z, counted from the first of the field.
 pub(crate) type Layers = [Range<usize>; 2];
 
-/// Layers that a coarse grid's cells and upper faces lie in.
+/// Layers of a coarse grid's cells and upper faces.
 pub(crate) fn all_layers(grid: &Grid) -> Layers {
     [1, 2].map(|axis| 1..grid.cells[axis] + 2)
 }
@@ -99,7 +98,7 @@ wide! {
 }
 
 wide! {
-    /// The same along a row.
+    /// Weighted sums along a row.
     fn weigh_row(into: &mut [f32], weights: Weights, from: &[f32]) {
         let last = into.len() - 2;
         let pairs = from.as_chunks::<2>().0;
@@ -150,16 +149,15 @@ wide! {
     }
 }
 
-/// Fine layers around a coarse one: the second before its first child and on. Beyond the last one there is nothing that
-/// has weight.
+/// Fine layers around a coarse one: the second before its first child and on. Beyond the last one all weights are zero.
 fn four(at: usize, cells: usize) -> [usize; 4] {
     [2 * at - 2, 2 * at - 1, 2 * at, 2 * at + 1].map(|at| at.min(cells + 2))
 }
 
-/// Numbers that rows are worked on together: what lies behind a row's end is written before the next row is.
+/// Number of values processed together in rows: values behind a row's end are overwritten by the next row.
 const LANES: usize = 16;
 
-/// The beginnings of rows as far as they all go, at most to a whole number of [`LANES`].
+/// The beginnings of rows of a common length, rounded up to [`LANES`] at most.
 fn padded<'a, const N: usize>(
     width: usize,
     into: &'a mut [f32],
@@ -170,15 +168,15 @@ fn padded<'a, const N: usize>(
     (&mut into[..len], rows.map(|row| &row[..len]))
 }
 
-/// Workspace between two grids: by z the field of the grid that is halved along z alone, by y along y and z.
+/// Buffers between two grids: by z the field of the grid that is halved along z alone, by y along y and z.
 pub(crate) struct Workspace<'a> {
     pub(crate) grids: &'a [Grid; 3],
     pub(crate) by_z: &'a mut [f32],
     pub(crate) by_y: &'a mut [f32],
 }
 
-/// Sums over four fine places around each coarse one along each axis, for some layers of the coarse grid; the fine field is
-/// wrapped.
+/// Sums over four fine places around each coarse one along each axis, for some layers of the coarse grid; the fine
+/// field is wrapped.
 pub(crate) fn gather(
     weights: [Weights; 3],
     (fine, from): (&Grid, &[f32]),
@@ -238,7 +236,7 @@ pub(crate) fn gather(
     }
 }
 
-/// Adds what is interpolated, times a scale, in some layers of the fine grid; the coarse field is wrapped.
+/// Adds the interpolated values, times a scale, in some layers of the fine grid; the coarse field is wrapped.
 pub(crate) fn spread(
     along: [Along; 3],
     from: &[f32],

@@ -1,4 +1,4 @@
-//! Paint that moves along one axis: what goes through each face, as fields.
+//! Paint that moves along one axis: the flux through each face, as fields.
 
 use maulstick_num::wide;
 
@@ -10,28 +10,28 @@ use crate::stencil::Span;
 
 /// Gradient of fill below which a cell has no surface.
 const LEAST_GRADIENT: f32 = 1e-3;
-/// Largest sum of the shares of a cell that two faces take, so that rounding never makes them more than the cell.
+/// Largest sum of a cell's shares through two faces, so that rounding never exceeds the cell.
 const BELOW_ONE: f32 = 1.0 - 4.0 * f32::EPSILON;
 
-/// Room for sweeps.
+/// Buffers of sweeps.
 #[derive(Clone, Debug)]
 pub(super) struct Sweep {
     capacity: u32,
-    /// Cells whose paint may move or come, and the faces between them.
+    /// Cells that paint may leave or enter, and the faces between them.
     runs: Runs,
     mask: Vec<f32>,
     fill: Vec<f32>,
-    /// Share of each cell that paint or a solid takes.
+    /// Share of each cell occupied by paint or a solid.
     taken: Vec<f32>,
-    /// Share of the axis in a cell's normal, with its sign; 0 where there is no surface.
+    /// Component of a cell's normal along the axis, signed; 0 without a surface.
     across: Vec<f32>,
-    /// Part of a cell that is to go through each face, upward.
+    /// Requested flux through each face, as a share of a cell, upward.
     courant: Vec<f32>,
-    /// Quanta that are asked of each face, upward.
+    /// Quanta requested through each face, upward.
     asks: Vec<i32>,
-    /// Share of the cell that gives which goes through each face.
+    /// Share of the donor that goes through each face.
     share: Vec<f32>,
-    /// Quanta of one paint that go through each face.
+    /// Quanta of one paint through each face.
     goes: Vec<i32>,
 }
 
@@ -52,7 +52,7 @@ impl Sweep {
         }
     }
 
-    /// Begins a step: finds the cells that paint may come to.
+    /// Begins a step: finds the cells that paint may enter.
     pub(super) fn begin(&mut self, domain: &Domain, capacity: u32) {
         self.capacity = capacity;
         let grid = domain.grid;
@@ -63,7 +63,7 @@ impl Sweep {
         }
         let before = std::mem::take(&mut self.runs);
         self.runs.find(grid.range(), mask);
-        // Nothing goes through faces beside them.
+        // Nothing goes through faces outside of them.
         for run in before.without(&self.runs) {
             self.courant[run.clone()].fill(0.0);
             self.asks[run.clone()].fill(0);
@@ -71,7 +71,7 @@ impl Sweep {
         }
     }
 
-    /// Moves paint along an axis; the cells are given by all their quanta, and by the room that they have.
+    /// Moves paint along an axis; `total` has all quanta of a cell, `room` its capacity.
     pub(super) fn along<'a>(
         &mut self,
         domain: &Domain,
@@ -85,7 +85,7 @@ impl Sweep {
         let capacity = self.capacity as f32;
         let (free, area) = (&domain.free[axis], &domain.area[axis]);
         let len = grid.len();
-        // Paint that came too fast for the other axes leaves no less room than a solid does.
+        // Paint that came too fast for the other axes leaves at least the capacity beside a solid.
         fill_flat(&mut self.fill[..len], &*total, room, LEAST_ROOM * capacity);
         take(&mut self.taken[..len], &self.fill, open);
         let (fill, taken) = (&self.fill, &self.taken);
@@ -150,8 +150,8 @@ wide! {
 }
 
 wide! {
-    /// Paint and what it lies on have one surface: without that a film thinner than a cell would have none above it, and be
-    /// torn along itself.
+    /// Paint and its base have one surface: otherwise a film thinner than a cell would have no normal, and be torn
+    /// along itself.
     fn take(taken: &mut [f32], fill: &[f32], open: &[f32]) {
         let n = taken.len();
         let (fill, open) = (&fill[..n], &open[..n]);
@@ -193,7 +193,7 @@ wide! {
 }
 
 wide! {
-    /// Quanta that are asked, of the cells that give: their fill, their normals and what they have.
+    /// Requested quanta, from the donors' fill, normals and content.
     fn find_asks(asks: &mut [i32], courant: &[f32], donors: (&[f32], &[f32], &[u32]), capacity: f32, by: usize, span: Span) {
         let (fill, across, total) = donors;
         let (f_low, f_high) = (span.before(fill, by), span.here(fill));
@@ -202,7 +202,7 @@ wide! {
         let c = span.here(courant);
         let asks = span.own(asks);
         for i in 0..asks.len() {
-            // All of them first, so that none is looked for by itself.
+            // All of them first, so that none is looked up separately.
             let fills = [f_low[i], f_high[i]];
             let shares = [a_low[i], a_high[i]];
             let counts = [t_low[i], t_high[i]];
@@ -226,7 +226,7 @@ wide! {
 }
 
 wide! {
-    /// The room of cells by what flows through their faces.
+    /// Updates the capacity of cells by the flow through their faces.
     fn change_room(room: &mut [f32], courant: &[f32], capacity: f32, by: usize, span: Span) {
         let (low, high) = (span.here(courant), span.after(courant, by));
         let room = span.own(room);
@@ -237,7 +237,7 @@ wide! {
 }
 
 wide! {
-    /// Shares of what the cells that give have, or of all that is asked of them where that is more.
+    /// Requests as shares of the donors' content, or of all requests to a donor where those exceed it.
     fn find_share(share: &mut [f32], asks: &[i32], total: &[u32], by: usize, span: Span) {
         let (before, here, after) = (span.before(asks, by), span.here(asks), span.after(asks, by));
         let (t_low, t_high) = (span.before(total, by), span.here(total));
@@ -260,7 +260,7 @@ wide! {
 }
 
 wide! {
-    /// Whole quanta of a paint: together at most what a cell has of it.
+    /// Whole quanta of a paint: together at most a cell's content.
     fn find_goes(goes: &mut [i32], share: &[f32], paint: &[u32], by: usize, span: Span) {
         let (low, high) = (span.before(paint, by), span.here(paint));
         let share = span.here(share);
@@ -276,13 +276,13 @@ wide! {
     }
 }
 
-/// Most quanta that go through a face at once.
+/// Greatest number of quanta through a face at once.
 const MOST_FLUX: f32 = 4_194_304.0;
 
-/// The whole part of a number that is not negative, at most [`MOST_FLUX`]: a cast would be done number by number.
+/// Integer part of a number that is not negative, at most [`MOST_FLUX`]: a cast would be done number by number.
 #[inline(always)]
 fn whole(number: f32) -> i32 {
-    /// From here on to twice that, each number is one more than the one before it.
+    /// From here to twice that, successive f32 numbers differ by one.
     const WHOLE: f32 = 8_388_608.0;
     let number = if number < MOST_FLUX {
         number

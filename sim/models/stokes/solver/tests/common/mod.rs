@@ -1,4 +1,4 @@
-//! What tests of flows share.
+//! Shared parts of tests of flows.
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
 pub mod pools;
@@ -27,7 +27,7 @@ pub fn full(grid: &Grid) -> Vec<f32> {
     vec![1.0; grid.len()]
 }
 
-/// The largest of these without its sign.
+/// The largest absolute value.
 pub fn worst(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |most, value| value.abs().max(most))
 }

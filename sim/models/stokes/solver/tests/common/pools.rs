@@ -4,7 +4,7 @@ use maulstick_num::sin;
 use maulstick_stokes::grid::Grid;
 use maulstick_stokes::stencil::Stencil;
 
-/// Where the paint is.
+/// Shape of a pool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pool {
     /// In a box that is open at the top.
@@ -20,7 +20,7 @@ enum Cell {
     Paint,
 }
 
-/// The pressure's equation in a pool of so many cells a side, with a right-hand side of noise.
+/// The pressure's equation in a pool of `cells` cells a side, with a right-hand side of noise.
 pub fn pool(cells: usize, pool: Pool) -> (Grid, Stencil, Vec<f32>) {
     let grid = Grid::walled([cells; 3]);
     let kind = |place: usize| {

@@ -1,4 +1,4 @@
-//! The solver beside a plain one in f64: dissipation written down as a sum of squares, and solved by elimination.
+//! The solver compared with a plain one in f64: dissipation as a sum of squares, solved by elimination.
 
 mod system;
 
@@ -36,7 +36,7 @@ fn basin(seed: u64) -> Basin {
     }
 }
 
-/// Velocities of the paint by both, face after face, and the pressures.
+/// Velocities of the paint by both solvers, face by face, and the pressures.
 fn both(basin: &Basin, fault: Option<Fault>) -> [Vec<f64>; 2] {
     let slow = basin.solve(fault);
     let grid = Grid::walled(basin.cells);
@@ -84,7 +84,7 @@ fn both(basin: &Basin, fault: Option<Fault>) -> [Vec<f64>; 2] {
     [fast.collect(), slow.values]
 }
 
-/// Largest difference by the largest value.
+/// Largest difference relative to the largest value.
 fn off([fast, slow]: [Vec<f64>; 2]) -> f64 {
     let most = slow
         .iter()

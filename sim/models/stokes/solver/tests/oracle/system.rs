@@ -1,17 +1,17 @@
 //! A basin of paint as one dense system of linear equations.
 //!
-//! What a step minimises is a sum of squares: of the change of each velocity, by the mass of its face, and of each rate of
-//! strain, by the paint that it strains; under the condition that as much goes into every cell as leaves it. No constant
-//! and no code is shared with the solver.
+//! A step minimises a sum of squares: of the change of each velocity, weighted by the mass of its face, and of each
+//! rate of strain, weighted by the strained paint; every cell's inflow must equal its outflow. No constant and no code
+//! is shared with the solver.
 
-/// A mistake to be noticed.
+/// A seeded fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fault {
     /// Shear is the gradient of one velocity alone.
     WithoutCrossTerm,
     /// Walls are a whole cell away.
     FullWalls,
-    /// Air holds what is beside it.
+    /// Air holds the velocities beside it.
     SurfaceSticks,
     /// Normal stress without its factor of two.
     HalfNormal,
@@ -28,7 +28,7 @@ pub(crate) struct Basin {
     pub before: Vec<f64>,
     /// Viscosity by the square of a cell and the step.
     pub tau: f64,
-    /// What the pull adds to each velocity in a step.
+    /// Velocity added by the body force in a step.
     pub pull: [f64; 3],
 }
 
@@ -39,7 +39,7 @@ pub(crate) struct Solution {
     pub values: Vec<f64>,
 }
 
-/// A velocity in a sum: an unknown, a number, or one that there is not.
+/// A velocity in a sum: an unknown, a number, or absent.
 #[derive(Clone, Copy, PartialEq)]
 enum Velocity {
     Unknown(usize),
@@ -61,7 +61,7 @@ impl Basin {
         inside.then(|| self.fill[x + self.cells[0] * (y + self.cells[1] * z)])
     }
 
-    /// A cell holds pressure from a tenth on.
+    /// A cell has a pressure from a fill of a tenth on.
     fn is_wet(&self, cell: [isize; 3]) -> bool {
         self.filled(cell).is_some_and(|fill| fill >= 0.1)
     }
@@ -236,7 +236,7 @@ impl Basin {
     }
 }
 
-/// Adds half of a weight times the square of a sum to what is minimised.
+/// Adds half of a weight times the square of a sum to the objective.
 fn add_square(system: &mut [Vec<f64>], weight: f64, terms: &[(Velocity, f64)]) {
     let last = system.len();
     for (row, by) in terms {

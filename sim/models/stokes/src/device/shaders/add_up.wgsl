@@ -1,7 +1,7 @@
-// Adds up partial sums, and finds what they are for. Nothing is divided by nothing: a direction that says nothing answers
+// Adds up partial sums, and computes the result. Quotients of zeros are zero: a negligible direction contributes
 // nothing.
 
-// Drag of walls on paint of a thickness of one, by its viscosity: between 3 for a film and 12 for a gap.
+// Drag of walls on paint of thickness one, relative to its viscosity: between 3 for a film and 12 for a gap.
 const GAP_DRAG = 6.0;
 const SMALLEST = 1e-36;
 const LARGEST = 3e38;
@@ -49,7 +49,7 @@ fn note_norm() {
     fields[scalar(NORMS + call.axis)] = sqrt(totals[NORM_ROW]);
 }
 
-// Part of an image's square below which what is left of it is made orthogonal again.
+// Share of an image's square below which its remainder is orthogonalised again.
 const CANCELLED = 1e-3;
 
 fn find_shares(is_second: bool) {
@@ -69,7 +69,7 @@ fn find_answer() {
     fields[scalar(ANSWERS + call.number)] = ratio(totals[1], totals[0]);
 }
 
-// Weights of the directions as they came.
+// Weights of the unmodified directions.
 fn find_weights() {
     for (var left = call.number; left > 0u; left--) {
         let number = left - 1u;
@@ -83,9 +83,9 @@ fn find_weights() {
 
 @compute @workgroup_size(256)
 fn add_up(@builtin(local_invocation_index) local: u32) {
-    // 0: columns; 1: shares, with the norm; 2: the answer, with the norm where it is the first; 3: weights, with the norm;
-    // 4: the mean of what is lacking; 5: the product with the preconditioned; 6: the curvature; 7 and 8: 1 and 2 of the second
-    // round.
+    // 0: columns; 1: shares, with the norm; 2: the answer, with the norm where it is the first; 3: weights, with the
+    // norm; 4: the mean of the deficit; 5: the product with the preconditioned; 6: the curvature; 7 and 8: 1 and 2 of
+    // the second round.
     switch call.mode {
         case 0u: {
             add_rows(local, 0u, 2u);

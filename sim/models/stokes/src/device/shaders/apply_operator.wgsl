@@ -1,4 +1,4 @@
-// The Stokes operator (operator.rs of maulstick-stokes), and what the preconditioner needs beside its cycles.
+// The Stokes operator (operator.rs of maulstick-stokes), and the parts of the preconditioner beside its cycles.
 
 // Force on a face across an axis by velocities and pressure that begin at `x`.
 fn force(axis: u32, at: u32, x: u32) -> f32 {
@@ -28,7 +28,7 @@ fn force(axis: u32, at: u32, x: u32) -> f32 {
     return fields[part(0u, axis, INERTIA) + at] * fields[u] + stress + pushes;
 }
 
-// Volume that leaves a wet cell with velocities that begin at `x`.
+// Outflow of a wet cell with velocities that begin at `x`.
 fn outflow(at: u32, x: u32) -> f32 {
     if fields[field(WET) + at] == 0.0 {
         return 0.0;
@@ -66,7 +66,7 @@ fn apply_operator(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoca
     fields[call.into + component * window.levels[0].len + spot.place] = value;
 }
 
-// Volume that is lacking: of the field at `into`, what velocities at `source` do not answer.
+// Volume deficit: the field at `into` less the outflow of the velocities at `source`.
 @compute @workgroup_size(256)
 fn find_lacking(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let spot = inner(0u, number_of(group, local));

@@ -1,4 +1,4 @@
-// The beginning of a step: bristles drag, solids and air have their velocities, and each cell its viscosity.
+// Beginning of a step: bristles drag, solids and air get their velocities, and each cell its viscosity.
 
 const LARGEST_RELATIVE_VISCOSITY = 2000.0;
 const THINNEST = 1e-3;
@@ -130,7 +130,7 @@ fn find_right(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
         displaced -= high - low;
         inside *= fields[wet - step] * fields[wet + step];
     }
-    // What wet cells have too much of leaves them, and those within the paint take in what they lack.
+    // Wet cells expel a share of their excess, and those within the paint take in a share of their deficit.
     let excess = fields[field(FILL) + spot.place] - 1.0;
     if excess > 1e-3 || (excess < -1e-3 && inside > 0.0) {
         displaced += window.relief * min(excess, 1.0);
@@ -138,7 +138,8 @@ fn find_right(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
     fields[field(B + 3u) + spot.place] = fields[wet] * displaced;
 }
 
-// The end of a step: velocities of air beside paint are the mean of those around it, and the pressure is one again.
+// End of a step: velocities of air beside paint become the mean of those around it, and the pressure its physical
+// value.
 @compute @workgroup_size(256)
 fn end_step(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let spot = inner(0u, number_of(group, local));

@@ -1,12 +1,13 @@
-// Transport of counted paint: volume/ of maulstick-stokes. Counts are whole numbers below 2²⁴, which f32 holds exactly; what goes
-// through a face one side loses and the other gains. Fields of the solver serve as room.
+// Transport of counted paint: volume/ of maulstick-stokes. Counts are whole numbers below 2²⁴, which f32 holds exactly;
+// one side loses and the other gains the flux through a face. Fields of the solver serve as scratch.
 
 const LEAST_ROOM = 0.3;
 const LARGEST_COURANT = 0.5;
 const LEAST_GRADIENT = 1e-3;
-// Division may be off by 2.5 in the last place, so what two faces take adds up to less than a cell.
+// Division may be off by 2.5 in the last place, so the shares of two faces add up to less than a cell.
 const BELOW_ONE = 0.99999905;
-// Room, fill, what is taken, part of a cell that goes through a face; all quanta, what is asked, what share goes.
+// Capacity, fill, occupied share, requested share of a cell through a face; all quanta, requested quanta, granted
+// share.
 const ROOM = 48u;
 const FULL = 49u;
 const TAKEN = 50u;
@@ -14,7 +15,7 @@ const COURANT = 51u;
 const TOTAL = 52u;
 const ASKS = 53u;
 const SHARE = 54u;
-// Seeded fault of tests; 0 where there is none.
+// Seeded fault of tests; 0 without one.
 override fault_lost: f32 = 0.0;
 
 fn order(turn: u32, number: u32) -> u32 {
@@ -75,7 +76,7 @@ fn fill_window(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocatio
     fields[field(FILL) + spot.place] = total / room_of(open);
 }
 
-// Takes up the counts that the call before has found, if its `first` is 1; room begins anew where its `axis` is 1.
+// Adds the counts found by the previous call if its `first` is 1; resets the capacity where its `axis` is 1.
 @compute @workgroup_size(256)
 fn take_counts(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let spot = inner(0u, number_of(group, local));
@@ -100,7 +101,7 @@ fn take_counts(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocatio
     fields[field(TAKEN) + spot.place] = 1.0 - open * (1.0 - min(full, 1.0));
 }
 
-// Quanta that are asked of each face, upward.
+// Quanta requested through each face, upward.
 @compute @workgroup_size(256)
 fn ask_faces(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let spot = inner(0u, number_of(group, local));
@@ -132,7 +133,7 @@ fn ask_faces(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_
     fields[field(ASKS) + spot.place] = asks;
 }
 
-// Shares of what the cells that give have, or of all that is asked of them where that is more.
+// Requests as shares of the donors' content, or of all requests to a donor where those exceed it.
 @compute @workgroup_size(256)
 fn share_faces(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let spot = inner(0u, number_of(group, local));
@@ -158,7 +159,7 @@ fn share_faces(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocatio
     fields[field(ROOM) + spot.place] += window.capacity * (fields[courant] - fields[courant + by]);
 }
 
-// Quanta of a paint that go through a face, upward.
+// Quanta of a paint through a face, upward.
 fn goes_through(paint: u32, face: u32, by: u32) -> f32 {
     let share = fields[field(SHARE) + face];
     if share == 0.0 {
@@ -182,7 +183,7 @@ fn carry_paint(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocatio
     fields[next_field(group.z) + spot.place] = fields[paint_field(group.z) + spot.place] + (comes - leaves) - lost;
 }
 
-// True of a drop that is too small to flow and has room below.
+// True for a drop that is too small to flow and has room below.
 fn sinks(at: u32) -> bool {
     let below = at - strides(0u).z;
     let own = fields[field(TOTAL) + at] / room_of(fields[open_field() + at]);

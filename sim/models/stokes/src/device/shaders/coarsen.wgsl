@@ -1,6 +1,6 @@
-// The operator of a coarser grid, and how much interpolated values count on the finer one.
+// The operator of a coarser grid, and the weight of interpolated values on the finer one.
 
-// Mass of a fine place, and half of its links with known places that fall within one coarse cell.
+// Mass of a fine place, and half of its links with known places within one coarse cell.
 fn lost(level: u32, component: u32, cell: vec3<i32>, at: u32) -> f32 {
     var sum = fields[part(level, component, INERTIA) + at];
     let unknown = part(level, component, ACTIVE) + at;
@@ -35,7 +35,7 @@ fn coarsen(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_in
     if !spot.is_one {
         return;
     }
-    // Fields of operator, mass, and what is active and known.
+    // Fields of the operator, mass, and masks of active and known places.
     let what = group.z % 6u;
     let component = group.z / 6u;
     var total = 0.0;
@@ -76,7 +76,7 @@ fn coarsen(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_in
     fields[part(coarse, component, what) + spot.place] = total;
 }
 
-// Scale of interpolated values: the inverse of the weights of the places that there are.
+// Scale of interpolated values: the inverse of the weights of the existing places.
 @compute @workgroup_size(256)
 fn find_scale(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let spot = inner(call.level, number_of(group, local));

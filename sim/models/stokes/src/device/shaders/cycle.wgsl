@@ -1,4 +1,4 @@
-// A V-cycle, stage by stage on the fine levels, and as a whole from the first level on that one workgroup does as fast.
+// A V-cycle, stage by stage on the fine levels, and as a whole from the first level that one workgroup does as fast.
 
 fn level_spot(level: u32, group: vec3<u32>, local: u32) -> Spot {
     return inner(level, number_of(group, local));

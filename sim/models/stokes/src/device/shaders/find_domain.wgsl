@@ -1,9 +1,10 @@
-// What the equations see of a window: domain/ of maulstick-stokes. Faces, then cells, then the faces that are unknowns, then edges.
+// Domain of the equations: domain/ of maulstick-stokes. Faces, then cells, then the faces that are unknowns, then
+// edges.
 
 const LEAST_MASS = 0.05;
 const LEAST_DISTANCE = 0.1;
 const TOUCHES = 1e-4;
-// Seeded faults of tests; 1 where there is none.
+// Seeded faults of tests; 1 without one.
 override fault_slope: f32 = 1.0;
 
 fn corner(cell: vec3<i32>) -> f32 {
@@ -13,11 +14,11 @@ fn corner(cell: vec3<i32>) -> f32 {
 
 fn share_of(all: f32, positive: f32, first: f32) -> f32 {
     let share = select(0.0, positive / all, all > 0.0);
-    // Nothing is near.
+    // No solid is near.
     return select(share, 1.0, first > 2.0);
 }
 
-// True of faces across an axis in the sides of the grid and beyond them.
+// True for faces across an axis in the sides of the grid and beyond them.
 fn is_side(axis: u32, cell: vec3<i32>) -> bool {
     var found = false;
     for (var along = 0u; along < 3u; along++) {
@@ -134,7 +135,7 @@ fn pair(axis: u32, here: u32, before: u32) -> Pair {
     let of_solid = select(near.x, near.y, is_first);
     let behind = min(of_solid, 0.0);
     let share = max(of_paint / (of_paint - behind), LEAST_DISTANCE);
-    // The grid's own side lies in the middle.
+    // The grid's own side is in the middle.
     let distance = select(share, 0.5, of_solid > TOUCHES);
     let is_wall = free.x * solid.y + free.y * solid.x > 0.0;
     return Pair(free.x + free.y, solid.x + solid.y, select(1.0, distance, is_wall));

@@ -1,7 +1,7 @@
 // Seven-point operators: those of the components of the velocity and of the pressure on the finest grid, then of each coarser
 // one: operator.rs and multigrid/ of maulstick-stokes.
 
-// Seeded fault of tests; 1 where there is none.
+// Seeded fault of tests; 1 without one.
 override fault_link: f32 = 1.0;
 
 fn is_beside_itself(axis: u32) -> bool {
@@ -40,7 +40,7 @@ fn find_stencil(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocati
         let wet = fields[field(WET) + spot.place];
         fields[part(0u, 3u, INERTIA) + spot.place] = 0.0;
         fields[part(0u, 3u, ACTIVE) + spot.place] = wet;
-        // Air beside paint has no pressure: it is known.
+        // Air beside paint has no unknown pressure.
         fields[part(0u, 3u, KNOWN) + spot.place] = select(wet, 1.0, sum > 0.0);
         return;
     }

@@ -1,5 +1,5 @@
-// Takes what volume is still gained or lost out of a velocity by conjugate gradients that multigrid preconditions:
-// Unified::project of maulstick-stokes. The residual is the field LACKING, z is ANSWER, and the residual's first three fields are
+// Removes the remaining divergence of a velocity by conjugate gradients with multigrid: Unified::project of
+// maulstick-stokes. The residual is the field LACKING, z is ANSWER, and the residual's first three fields are
 // direction, image and solution.
 
 fn direction() -> u32 {
@@ -14,7 +14,7 @@ fn solution() -> u32 {
     return field(R + 2u);
 }
 
-// An own place of the pressure.
+// A place of the pressure that is no copy.
 fn cell_of(group: u32, local: u32, k: u32) -> Spot {
     return inner(0u, (group * OWN + k) * 256u + local);
 }
@@ -49,7 +49,7 @@ fn weigh_lacking(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocat
     add_lanes(local, group.x, 0u, 3u);
 }
 
-// Takes out the mean, which no pressure answers where none is known.
+// Removes the mean, which no pressure reduces where none is known.
 @compute @workgroup_size(256)
 fn level_lacking(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     var sum = 0.0;
@@ -133,7 +133,7 @@ fn follow_direction(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invo
     add_lanes(local, group.x, NORM_ROW, 1u);
 }
 
-// Velocities and pressure with the solution.
+// Adds the solution to velocities and pressure.
 @compute @workgroup_size(256)
 fn correct_flow(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let spot = inner(0u, number_of(group, local));

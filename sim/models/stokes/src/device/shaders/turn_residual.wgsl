@@ -1,9 +1,9 @@
 // Generalised conjugate residuals (Eisenstat, Elman and Schultz 1983): residuals.rs of maulstick-stokes. Direction and image of
 // step j are the fields at DIRECTIONS + 8j, four of each.
 
-// A number of the four components.
+// A value of the four components.
 struct Element {
-    // Within four fields.
+    // Index within four fields.
     place: u32,
     is_one: bool,
     is_own: bool,
@@ -23,7 +23,7 @@ fn image(number: u32) -> u32 {
 
 var<workgroup> is_wanted: u32;
 
-// True if the call is the first round, or the first one has left so little of the image that rounding counts.
+// True in the first round, or where the first has left so little of the image that rounding matters.
 fn goes_on(local: u32) -> bool {
     if local == 0u {
         is_wanted = select(0u, 1u, call.mode == 0u || fields[scalar(AGAIN)] > 0.0);
@@ -31,7 +31,7 @@ fn goes_on(local: u32) -> bool {
     return workgroupUniformLoad(&is_wanted) == 1u;
 }
 
-// Products of an image with those before, and with itself. Mode 1 is the second round.
+// Products of an image with earlier ones, and with itself. Mode 1 is the second round.
 @compute @workgroup_size(256)
 fn multiply_images(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     if !goes_on(local) {
@@ -60,7 +60,8 @@ fn multiply_images(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoc
     }
 }
 
-// Takes shares of those before out of an image; its square and its product with the residual. Mode 1 is the second round.
+// Subtracts shares of earlier images from an image; its square and its product with the residual. Mode 1 is the second
+// round.
 @compute @workgroup_size(256)
 fn take_shares(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     if !goes_on(local) {
@@ -87,7 +88,7 @@ fn take_shares(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocatio
     add_lanes(local, group.x, 0u, 2u);
 }
 
-// Takes what a direction answers out of the residual, or nothing in mode 1. The square of what is left.
+// Subtracts a direction's part from the residual, or nothing in mode 1; the square of the result.
 @compute @workgroup_size(256)
 fn answer_residual(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     var sum = 0.0;
@@ -107,7 +108,7 @@ fn answer_residual(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoc
     add_lanes(local, group.x, NORM_ROW, 1u);
 }
 
-// Adds what all directions answer.
+// Adds the directions, weighted, to the solution.
 @compute @workgroup_size(256)
 fn add_directions(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let spot = inner(0u, number_of(group, local));

@@ -1,4 +1,4 @@
-// Mean thickness of the paint, cells: how many lie above each other. Walls drag at thin paint as mass would.
+// Mean thickness of the paint, cells above each other. The drag of walls on thin paint acts like mass.
 
 @compute @workgroup_size(256)
 fn weigh_columns(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {

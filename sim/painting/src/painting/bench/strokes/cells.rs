@@ -1,6 +1,6 @@
 //! Rectangles of cells of a surface.
 
-/// The cells `from` up to but not with `to`; they may lie beyond the surface's edge.
+/// Half-open range of cells, which may extend beyond the surface's edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Cells {
     pub(super) from: [i64; 2],
@@ -8,7 +8,7 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// The cells grown by so many on each side.
+    /// The cells grown by `by` on each side.
     pub(super) fn grown(self, by: i64) -> Self {
         Self {
             from: self.from.map(|cell| cell - by),

@@ -65,7 +65,7 @@ impl Workbench {
         stroke.follow(epoch, solve)
     }
 
-    /// Ends a brush's contact: what it left relaxes.
+    /// Ends a brush's contact; its paint relaxes.
     fn lift(&mut self, brush: usize) {
         if let Some((mut stroke, path)) = self.take_path(brush) {
             stroke.finish(path);

@@ -1,7 +1,7 @@
-//! Paint after a stroke: once the brush is lifted the model moves it as it would move by itself.
+//! Paint after a stroke: once the brush is lifted the model lets it relax.
 //!
-//! It is a part of the stroke, so undo takes both back, and it follows from the journal alone: the same bytes live and
-//! offline. Palettes are left out, for their wells are heaps that stand.
+//! It is a part of the stroke, so undo reverts both, and it follows from the journal alone: the same bytes live and
+//! offline. Palettes are left out, because their wells are standing heaps.
 
 use maulstick_model::interface::Rest;
 use maulstick_types::paint::TILE;
@@ -13,7 +13,7 @@ use crate::painting::desk::preparation::Preparation;
 use crate::painting::optics::thinner_slot;
 
 impl Stroke<'_> {
-    /// Has the model move the paint that the stroke has reached.
+    /// Makes the model relax the paint within the stroke's reach.
     pub(super) fn relax(&mut self) {
         let model = self.surface().model;
         let halo = self.bench.backend.models.of(model).rest_halo();
@@ -26,7 +26,7 @@ impl Stroke<'_> {
         self.bench.settle();
         // Tiles between those that it reached may be another brush's.
         self.claim(reached);
-        // With what the model looks at beside it, whatever the window held before.
+        // Including the cells that the model reads beside it, independent of the window's earlier extent.
         if !self.open_window(reached.grown(halo as i64)) {
             return;
         }

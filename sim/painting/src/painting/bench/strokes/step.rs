@@ -16,7 +16,7 @@ use crate::painting::desk::preparation::Preparation;
 use crate::painting::optics::thinner_slot;
 
 impl Stroke<'_> {
-    /// One step of the brush along its path, doubled so many times.
+    /// One step of the brush along its path, with a number of doublings.
     pub(super) fn step(&mut self, sweep: Sweep<'_>, doublings: u32) {
         self.bench.accounts.work.steps += 1;
         let traits = self.traits().doubled(doublings);
@@ -44,7 +44,7 @@ impl Stroke<'_> {
         self.note_deferred(timing);
     }
 
-    /// Height to which there is paint, on the surface and the brush, cells; of deferred steps it is not known.
+    /// Height of the highest paint, on the surface and the brush, cells; unknown for deferred steps.
     fn paint_height(&self, traits: &BrushTraits, timing: Timing) -> f32 {
         if timing == Timing::Deferred {
             return f32::INFINITY;
@@ -54,7 +54,7 @@ impl Stroke<'_> {
         wet + film + traits.sink + tooth
     }
 
-    /// Has the model move the paint under the head.
+    /// Makes the model move the paint under the head.
     fn move_paint(
         &mut self,
         sweep: Sweep<'_>,

@@ -65,7 +65,7 @@ impl Stroke<'_> {
         let is_restarted = solve.flags & solve_flags::RESTARTED != 0;
         let lands = self.brush().path.is_none();
         if self.brush().stroke != Some((epoch, solve.stroke)) {
-            // A brush that rested and never left keeps its bristles as they lie.
+            // A brush that rested and never left keeps the disorder of its bristles.
             let rested = is_restarted && !lands;
             self.begin((epoch, solve.stroke), rested)?;
         }
@@ -96,7 +96,7 @@ impl Stroke<'_> {
         Ok(())
     }
 
-    /// Begins the stroke with this epoch and number: the bristles lie anew, unless the brush rested.
+    /// Begins the stroke with this epoch and number: the bristles get another disorder, unless the brush rested.
     fn begin(&mut self, stroke: (u32, u64), rested: bool) -> Result<(), EditError> {
         self.bench.lift(self.brush);
         self.brush_mut().stroke = Some(stroke);
@@ -132,8 +132,8 @@ impl Stroke<'_> {
         Ok(())
     }
 
-    /// Thins a brush that comes down on the canvas to the strips that its cells can tell apart. On a palette it stays
-    /// as it is: its load would be merged and split at each dip.
+    /// Thins a brush that comes down on the canvas to the strips that its cells can resolve. On a palette it is
+    /// unchanged: its load would be merged and split at each dip.
     fn thin(&mut self) {
         if self.surface().id == CANVAS {
             self.bench.settle();

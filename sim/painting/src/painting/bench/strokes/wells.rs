@@ -1,8 +1,8 @@
 //! The wells of a palette under a stroke: paint that never runs out, and the cleaner.
 //!
-//! Under the brush a well's cells hold its mixture, fresh: paint that was pushed into them goes to the cleaner, paint
-//! that was taken comes from the tubes. A jar of medium is a well of thinner in which nothing stays: what a step leaves
-//! there goes to the cleaner. A brush that touches the cleaner is clean.
+//! Under the brush a well's cells have its fresh mixture: paint pushed into them goes to the cleaner, paint taken comes
+//! from the tubes. A jar of medium is a well of thinner that stays pure: paint left there by a step goes to the
+//! cleaner. A brush that touches the cleaner is clean.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use super::stroke::Stroke;
 use crate::ledger::Ledger;
 use crate::painting::bench::Workbench;
 
-/// A brush in a jar of medium soaks it up until it is this share of what it carries.
+/// Share of medium in a brush's load up to which it soaks in a jar.
 const SOAK_LIMIT: f64 = 0.85;
 /// Share of the missing medium that is soaked up in a step.
 const SOAK_RATE: f64 = 0.1;
@@ -79,7 +79,7 @@ impl Stroke<'_> {
                 WellKind::Paint { mixture } => mixture.clone(),
                 WellKind::Medium => Mixture::pure(THINNER),
                 WellKind::Cleaner => {
-                    // Whatever else of the head is low, the jar cleans a brush that is in it.
+                    // The jar cleans a brush in it, whatever else of the head is low.
                     if dips() {
                         self.clean_in(&well, cells);
                     }
@@ -99,14 +99,14 @@ impl Stroke<'_> {
                 && dips()
                 && let Some(carried) = self.soak(*thinner)
             {
-                // What it meets is what it carries: it loses no more than that.
+                // It meets its own mixture, so that it loses nothing more.
                 shares = carried;
             }
             self.fill_well((place, &well), cells, &shares);
         }
     }
 
-    /// Soaks the brush in a jar of medium; shares of what it carries then, unless that is medium alone.
+    /// Soaks the brush in a jar of medium; shares of its load then, unless that is medium alone.
     fn soak(&mut self, thinner: usize) -> Option<[f64; SLOTS]> {
         let Workbench {
             brushes, accounts, ..
@@ -220,8 +220,8 @@ fn thicknesses(window: &Window, cells: &[usize], heap: Option<&HeapCells>) -> Ve
 /// No paint, for [`renew`].
 const NOTHING: (&[f64; SLOTS], &[f64]) = (&[0.0; SLOTS], &[]);
 
-/// Makes cells hold just what is fresh, of each slot a share of the cell's quanta: the cleaner takes what is too much,
-/// the tubes give what is missing.
+/// Renews cells with fresh paint, of each slot a share of the cell's quanta: the cleaner takes the excess, the tubes
+/// supply the deficit.
 fn renew(
     window: &mut Window,
     cells: &[usize],

@@ -1,11 +1,11 @@
 // Stages of a V-cycle on one level. On the finest one right-hand side and solution are those of the call.
 
-// Inverses of the roots of a Chebyshev polynomial on [1/3, 2], where the spectrum lies that no coarser grid sees.
+// Inverses of the roots of a Chebyshev polynomial on [1/3, 2], the part of the spectrum that no coarser grid resolves.
 const FIRST = 0.5695;
 const SECOND = 1.732;
-// Steps on the coarsest grid.
+// Number of steps on the coarsest grid.
 const COARSEST_STEPS = 16u;
-// Seeded fault of tests; 1 where there is none.
+// Seeded fault of tests; 1 without one.
 override fault_smoothing: f32 = 1.0;
 
 fn right_of(level: u32, component: u32) -> u32 {
@@ -47,7 +47,7 @@ fn sum_of(values: vec3<f32>) -> f32 {
     return (values.x + values.y) + values.z;
 }
 
-// Two steps from nothing: by ω, then by ψ.
+// Two steps from zero: by ω, then by ψ.
 fn begin_at(level: u32, component: u32, spot: Spot, omega: f32, psi: f32) {
     let inverse = part(level, component, INVERSE) + spot.at;
     let b = right_of(level, component) + spot.at;
@@ -79,7 +79,7 @@ fn relax_at(level: u32, component: u32, spot: Spot, omega: f32, source: u32, int
     fields[into + spot.place] = value;
 }
 
-// What is left of the right-hand side, times the scale of interpolation.
+// Residual times the scale of interpolation.
 fn leave_at(level: u32, component: u32, spot: Spot) {
     let scale = fields[part(level, component, SCALE) + spot.at];
     var value = 0.0;
@@ -118,7 +118,7 @@ fn restrict_at(level: u32, component: u32, spot: Spot) {
     fields[part(coarse, component, RIGHT) + spot.place] = total;
 }
 
-// Adds what the next level has found.
+// Adds the correction of the next level.
 fn prolong_at(level: u32, component: u32, spot: Spot) {
     let scale = fields[part(level, component, SCALE) + spot.at];
     if scale > 0.0 {

@@ -1,14 +1,14 @@
-// Sums over fields: each workgroup has partial sums of up to SUMS products, which one workgroup then adds up. The order is
-// fixed, so a device gives the same bytes again.
+// Sums over fields: each workgroup has partial sums of up to SUMS products, which one workgroup then adds up. The order
+// is fixed, so a device reproduces its bytes.
 
 const SUMS = 15u;
-// Numbers of an invocation.
+// Number of values of an invocation.
 const OWN = 8u;
 
 // Less than the 16,352 bytes that every device has.
 var<workgroup> lanes: array<f32, 3840>;
 
-// Writes the workgroup's sum of each of so many values that its invocations left in `lanes`, as rows of 256.
+// Writes the workgroup's sum of each of `count` values that its invocations left in `lanes`, as rows of 256.
 fn add_lanes(local: u32, group: u32, first: u32, count: u32) {
     workgroupBarrier();
     // Sixteen invocations a sum.

@@ -1,5 +1,5 @@
-// Between a grid and the next: multigrid/transfer.rs of maulstick-stokes. Coarse cell C covers the fine cells 2C and 2C + 1;
-// across the axis of a component's faces, coarse face C is the fine face 2C.
+// Transfer between a grid and the next: multigrid/transfer.rs of maulstick-stokes. Coarse cell C covers the fine cells
+// 2C and 2C + 1; across the axis of a component's faces, coarse face C is the fine face 2C.
 
 // Kinds of weights of the four fine places from the one before the first child on.
 const RESTRICTION = 0u;
@@ -24,7 +24,7 @@ fn weights_of(kind: u32, is_faces: bool) -> vec4<f32> {
     }
 }
 
-// Fine places around a coarse one: of each axis the first, their number and weights.
+// Fine places around a coarse one, by axis: the first, their number and weights.
 struct Around {
     first: vec3<i32>,
     count: vec3<i32>,
@@ -37,7 +37,7 @@ fn around(fine: u32, component: u32, coarse: vec3<i32>, kinds: vec3<u32>) -> Aro
     let halved = window.levels[fine].halved == vec3(1u);
     let one = vec4(1.0, 0.0, 0.0, 0.0);
     let first = select(coarse, 2 * coarse - 1, halved);
-    // Beyond the last layer there is nothing.
+    // Beyond the last layer there are no values.
     let room = vec3<i32>(window.levels[fine].cells) + 2 - first;
     return Around(
         first,
@@ -48,7 +48,7 @@ fn around(fine: u32, component: u32, coarse: vec3<i32>, kinds: vec3<u32>) -> Aro
     );
 }
 
-// Value that a fine place has of the coarse ones beside it, by lines between them; the coarse field begins at `from`.
+// Value of a fine place, interpolated linearly between the coarse ones beside it; the coarse field begins at `from`.
 fn between(fine: u32, component: u32, cell: vec3<i32>, start: u32) -> f32 {
     let by = strides(fine + 1u);
     let halved = window.levels[fine].halved == vec3(1u);

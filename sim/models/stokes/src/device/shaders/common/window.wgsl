@@ -1,39 +1,39 @@
-// The window of the flow: its grids, its fields and how they lie. Indices are those of maulstick_stokes::grid: x fastest, one
-// more layer below and two above. Beyond a periodic side each field holds what its opposite cell does: who writes a field writes
-// it there too, so nobody wraps it.
+// The window of the flow: its grids, and its fields with their layout. Indices are those of maulstick_stokes::grid: x
+// fastest, one more layer below and two above. Beyond a periodic side each field has the values of the opposite cells:
+// a stage that writes a field writes them too, so no stage wraps it.
 
 // A grid of the hierarchy.
 struct Level {
     cells: vec3<u32>,
-    // Numbers of a field.
+    // Length of a field.
     len: u32,
-    // 1 for each axis that the next grid has half as many cells of.
+    // 1 for each axis along which the next grid has half the cells.
     halved: vec3<u32>,
-    // Where its fields begin.
+    // Offset of its fields.
     base: u32,
 }
 
-// What holds for all dispatches of a step.
+// Parameters of all dispatches of a step.
 struct Window {
     levels: array<Level, 12>,
     // By axis: 0 no-slip, 1 slip, 2 periodic.
     low: vec3<u32>,
     count: u32,
     high: vec3<u32>,
-    // Where partial sums and scalars lie.
+    // Offsets of partial sums and scalars.
     partials: u32,
-    // What the pull adds to a velocity.
+    // Velocity added by the body force.
     pull: vec3<f32>,
     scalars: u32,
     // Weights of mass and of viscosity; νΔt/h².
     alpha: f32,
     beta: f32,
     tau: f32,
-    // Fill of a cell from which on it resists pressure.
+    // Fill from which a cell resists pressure.
     least_fill: f32,
-    // Of what a cell has too much, what leaves it, as a velocity.
+    // Outflow of a cell per excess of volume, as a velocity.
     relief: f32,
-    // Pressure by the velocity that it makes.
+    // Pressure per velocity that it causes.
     to_pressure: f32,
     // 1/h, yield stress by viscosity, n − 1, 1/reference rate, the least rate.
     per_cell: f32,
@@ -43,19 +43,19 @@ struct Window {
     least_rate: f32,
     // 1 where bristles resist.
     resists: u32,
-    // Quanta that fill a cell, Δt/h of a part of a step, paints, number of the first part's order of axes.
+    // Quanta that fill a cell, Δt/h of a part of a step, number of paints, index of the first part's order of axes.
     capacity: f32,
     courant: f32,
     paints: u32,
     turn: u32,
-    // Directions that there is room for.
+    // Number of directions that fit.
     memory: u32,
     padding_a: u32,
     padding_b: u32,
     padding_c: u32,
 }
 
-// What one dispatch is about.
+// Parameters of one dispatch.
 struct Call {
     level: u32,
     // First component: 0 to 2 are velocities, 3 is the pressure.
@@ -63,7 +63,7 @@ struct Call {
     // On the finest grid, right-hand side and solution of the first component.
     source: u32,
     into: u32,
-    // Number of the direction, of the partial sums, of the sum that is wanted.
+    // Number of the direction, of the partial sums, of the requested sum.
     number: u32,
     groups: u32,
     mode: u32,
@@ -110,14 +110,14 @@ const SPARE = 8u;
 const SOLUTION = 9u;
 const RIGHT = 10u;
 
-// Workgroups of a row of workgroups.
+// Number of workgroups in a row.
 const ROW = 32768u;
 
 fn field(number: u32) -> u32 {
     return number * window.levels[0].len;
 }
 
-// Where a field of a component on a level begins.
+// Offset of a field of a component on a level.
 fn part(level: u32, component: u32, number: u32) -> u32 {
     let of_component = select(11u, 9u, level == 0u);
     return window.levels[level].base + (component * of_component + number) * window.levels[level].len;
@@ -132,15 +132,15 @@ fn is_periodic(axis: u32) -> bool {
     return window.low[axis] == 2u;
 }
 
-// A place that an invocation writes.
+// A place written by an invocation.
 struct Spot {
-    // Where it lies, and where the cell lies that it stands for.
+    // Its index, and that of the cell that it copies.
     place: u32,
     at: u32,
     cell: vec3<i32>,
     // False where there is nothing to do.
     is_one: bool,
-    // True if it stands for itself.
+    // True if it is no copy.
     is_own: bool,
 }
 
@@ -170,7 +170,7 @@ fn spot(level: u32, id: u32, start: vec3<i32>, size: vec3<u32>) -> Spot {
     );
 }
 
-// Sizes of the block of cells, with what lies beyond periodic sides.
+// Size of the block of cells, with the copies beyond periodic sides.
 fn inner_size(level: u32) -> vec3<u32> {
     return window.levels[level].cells + select(vec3(0u), vec3(3u), window.low == vec3(2u));
 }
@@ -199,8 +199,9 @@ fn others(axis: u32) -> vec2<u32> {
     return select(select(vec2(0u, 1u), vec2(0u, 2u), axis == 1u), vec2(1u, 2u), axis == 0u);
 }
 
-// Scalars of the solver: squares of images, answers, shares of earlier images in one or weights of directions, norms of the
-// residual, the walls' drag; those of conjugate gradients; the square of an image, and whether a second round is wanted; the shares of all images; norms of what volume is lacking.
+// Scalars of the solver: squares of images, answers, shares of earlier images in one or weights of directions, norms of
+// the residual, the walls' drag; those of conjugate gradients; the square of an image, and the flag of a second round;
+// the shares of all images; norms of the volume deficit.
 const SQUARED = 0u;
 const ANSWERS = 24u;
 const SHARES = 48u;
@@ -219,5 +220,5 @@ fn scalar(number: u32) -> u32 {
     return window.scalars + number;
 }
 
-// Row of partial sums that is a norm's.
+// Row of the norm's partial sums.
 const NORM_ROW = 31u;

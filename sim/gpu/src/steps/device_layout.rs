@@ -9,48 +9,48 @@ use maulstick_model::brush::load::BrushLoad;
 use maulstick_model::interface::Step;
 use maulstick_types::paint::TILE;
 
-/// Most bytes of a buffer that every device can bind.
+/// Greatest buffer that every device can bind, bytes.
 const MOST_BYTES: usize = 128 << 20;
-/// Most bits of a key that may number a segment: the rest tells scores apart.
+/// Greatest number of bits of a key that number a segment; the others hold the score.
 const MOST_BITS: u32 = 17;
 
-/// What of a window and a brush the shaders have to know.
+/// Shader-visible layout of a window and a brush load.
 #[derive(Clone, Debug)]
-pub struct Residence {
-    /// The paints, in order of plane.
+pub struct DeviceLayout {
+    /// Slots of the paints, in order of plane.
     pub slots: Vec<usize>,
-    /// Cells of the window.
+    /// Number of cells of the window.
     pub cells: usize,
-    /// Texels of the brush.
+    /// Number of texels of the brush.
     pub texels: usize,
-    /// Strips of the brush.
+    /// Number of strips of the brush.
     pub strips: usize,
-    /// Faces and points of its skin.
+    /// Number of faces of its skin.
     pub faces: usize,
-    /// See `faces`.
+    /// Number of points of its skin.
     pub vertices: usize,
-    /// Steps with contact that the brush had made.
+    /// Number of steps with contact before.
     steps: u64,
 }
 
-/// What is read back.
+/// State read back from the device.
 pub struct Settled {
     /// Rows of the window.
     pub rows: std::ops::Range<usize>,
     /// Counts on those rows, paint after paint.
     pub planes: Vec<f32>,
-    /// The load, as step.wgsl lays it out.
+    /// Load of the brush, in the layout of step.wgsl.
     pub load: Vec<u32>,
-    /// The highest that paint ever stood, quanta.
+    /// Greatest height of paint over all steps, quanta.
     pub top: f32,
 }
 
-impl Residence {
-    /// Window and load of a step; none where they are too large for the device.
+impl DeviceLayout {
+    /// Layout of a step's window and load; `None` where they are too large for the device.
     pub fn new(step: &Step<'_>) -> Option<Self> {
         let head = step.head;
         let in_use = |slot: &usize| step.window.has(*slot) || step.load.has(*slot);
-        let residence = Self {
+        let layout = Self {
             slots: (0..SLOTS).filter(in_use).collect(),
             cells: step.window.width() * step.window.height(),
             texels: step.load.texels(),
@@ -59,13 +59,13 @@ impl Residence {
             vertices: head.skin().map_or(0, |skin| skin.places().len()),
             steps: step.load.steps(),
         };
-        let fits = residence.has_room(residence.cells as u64)
-            && 4 * residence.load_words() <= MOST_BYTES
-            && residence.segment_bits() <= MOST_BITS;
-        fits.then_some(residence)
+        let fits = layout.has_room(layout.cells as u64)
+            && 4 * layout.load_words() <= MOST_BYTES
+            && layout.segment_bits() <= MOST_BITS;
+        fits.then_some(layout)
     }
 
-    /// True if a grid of so many cells is not too large.
+    /// True if a grid with this number of cells fits.
     pub fn has_room(&self, cells: u64) -> bool {
         cells * self.bytes_by_cell() as u64 <= MOST_BYTES as u64
     }
@@ -75,17 +75,17 @@ impl Residence {
         (4 * self.slots.len()).max(32)
     }
 
-    /// Steps with contact that the brush had made.
+    /// Number of steps with contact before.
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// Segments that the head is drawn as.
+    /// Number of segments of the drawn head.
     pub fn segments(&self) -> usize {
         2 * self.faces + self.strips * (STATIONS - 1)
     }
 
-    /// Bits that number a segment, and one value besides.
+    /// Number of bits that number a segment, with one value to spare.
     pub fn segment_bits(&self) -> u32 {
         usize::BITS - self.segments().leading_zeros()
     }
@@ -96,7 +96,7 @@ impl Residence {
         place.map_or(u32::MAX, |place| place as u32)
     }
 
-    /// By slot, how much more there is than window and load have now.
+    /// By slot, the excess of the settled state over the current window and load.
     pub fn gained(&self, settled: &Settled, window: &Window, load: &BrushLoad) -> [i64; SLOTS] {
         let mut gained = [0; SLOTS];
         let run = settled.rows.start * window.width()..settled.rows.end * window.width();
@@ -117,22 +117,22 @@ impl Residence {
         gained
     }
 
-    /// Words of the load.
+    /// Size of the load, words.
     pub fn load_words(&self) -> usize {
         1 + (1 + 2 * self.slots.len()) * self.texels
     }
 
-    /// Words of the poses of a drawing of the head.
+    /// Size of the poses of one drawing of the head, words.
     pub fn poses_words(&self) -> usize {
         (5 * STATIONS + 2) * self.strips + 5 * self.vertices
     }
 
-    /// Words of what is asked of the brush.
+    /// Size of the requests to the brush, words.
     pub fn asks_words(&self) -> usize {
         (2 + self.slots.len()) * self.texels + 2 * self.strips
     }
 
-    /// What of the head is always the same.
+    /// Constant geometry of the head, in the layout of the shaders.
     pub fn head(&self, head: &Head) -> Vec<u32> {
         let mut words = Vec::new();
         if let Some(skin) = head.skin() {
@@ -147,7 +147,7 @@ impl Residence {
         words
     }
 
-    /// The load.
+    /// Load of the brush, in the layout of step.wgsl.
     pub fn load(&self, load: &BrushLoad) -> Vec<u32> {
         let mut words = Vec::with_capacity(self.load_words());
         words.push(load.steps() as u32);
@@ -164,7 +164,7 @@ impl Residence {
         words
     }
 
-    /// The planes of the window, each as bytes; `nothing` are those of one without paint.
+    /// Planes of the window as bytes; `nothing` stands for one without paint.
     pub fn planes<'a>(&self, window: &'a Window, nothing: &'a [f32]) -> Vec<&'a [u8]> {
         let plane = |slot: &usize| {
             let mut planes = window.planes();
@@ -174,7 +174,7 @@ impl Residence {
         self.slots.iter().map(plane).collect()
     }
 
-    /// Writes what was read back into window and load.
+    /// Writes the settled state into window and load.
     pub fn write(&self, settled: &Settled, window: &mut Window, load: &mut BrushLoad) {
         self.write_planes(settled, window);
         self.write_load(settled, load);
@@ -234,7 +234,7 @@ impl Residence {
 }
 
 impl Settled {
-    /// What the device wrote: counts of `words` words, then the load.
+    /// Decodes a read-back: counts of `words` words, then the load.
     pub fn read(bytes: &[u8], words: usize, rows: std::ops::Range<usize>, top: f32) -> Self {
         let (planes, load) = bytes.split_at(words * size_of::<f32>());
         Self {
