@@ -5,8 +5,8 @@ use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, RigConfig};
 use maulstick_types::command::slow_canvas::{SLOW_CELL_M, SLOW_CELLS, is_slow};
 use maulstick_types::limits::CELLS_IN_ALL;
-use thiserror::Error;
 use maulstick_types::values::{CellSide, Quantity};
+use thiserror::Error;
 
 /// Side of a cell in pictures, mm. Live painting uses those of its rig, which are larger, so that a broad brush keeps
 /// up with the hand.

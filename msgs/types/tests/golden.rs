@@ -24,8 +24,8 @@ use parts::messages::{
     after, command, entry, knot, local, mixture, model, pen, reply, sample, well,
 };
 use parts::{
-    control, files, force_reply, node_status, paint_status, pose, presented, scene, status, takes,
-    thumbnail,
+    control, files, force_reply, handling, node_status, paint_status, pose, presented, status,
+    takes, thumbnail,
 };
 
 /// A line `Name/version hash hex` of a message, which must also come back from its bytes.
@@ -85,7 +85,7 @@ fn details() -> [Detail; 5] {
             },
         },
         Detail::Dried {
-            layer: maulstick_types::scene::Layer {
+            layer: Layer {
                 number: 1,
                 name: "sky".into(),
                 opacity: 1.0,
@@ -165,9 +165,21 @@ fn haptics() -> [String; 11] {
             time_to_live_ns: 4,
             recovery_ns: 5,
         }),
-        orders
-            .map(|order| line(&ForceRequest::by("hand", order)))
-            .concat(),
+        line(&ForceRequest::by(
+            "hand",
+            ForceOrder::Strength { share: 0.5 },
+        )),
+        line(&ForceRequest::by(
+            "hand",
+            ForceOrder::Guidance { share: 0.5 },
+        )),
+        line(&ForceRequest::by(
+            "hand",
+            ForceOrder::Drive {
+                source: 1,
+                epoch: 2,
+            },
+        )),
         line(&force_reply()),
     ]
 }

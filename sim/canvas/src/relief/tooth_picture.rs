@@ -209,6 +209,6 @@ mod tests {
             1e-3,
             &Assets::default(),
         );
-        assert!(matches!(none, Err(EditError::NoPicture(_))));
+        assert!(matches!(none, Err(CanvasError::NoPicture(_))));
     }
 }

@@ -90,7 +90,7 @@ pub enum FileFault {
         nm: f64,
     },
     /// K or S out of range.
-    #[error("column {column}: {} is not 0 to {MOST:.0}", shown(.cell))]
+    #[error("column {column}: {} is not 0 to {COEFFICIENT_MAX:.0}", shown(.cell))]
     Value {
         /// The column.
         column: usize,
@@ -200,7 +200,7 @@ fn spectrum(row: Row<'_>) -> Result<Spectrum, PaintError> {
     let mut values = [0.0; SAMPLES];
     for (column, value) in (NAMED..).zip(&mut values) {
         let number = row.number(column)?;
-        if !(0.0..=MOST).contains(&number) {
+        if !(0.0..=COEFFICIENT_MAX).contains(&number) {
             return Err(PaintError::File {
                 line: row.line(),
                 fault: FileFault::Value {

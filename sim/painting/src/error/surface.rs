@@ -2,8 +2,8 @@
 
 use maulstick_types::Region;
 use maulstick_types::command::advice::Advice;
-use maulstick_types::values::{CellSide, Quantity as _};
 use maulstick_types::nearest::choice;
+use maulstick_types::values::{CellSide, Quantity as _};
 
 /// A surface, a place on it or a property of it that is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
