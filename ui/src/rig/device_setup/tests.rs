@@ -61,7 +61,7 @@ fn fit_and_put_back(
     report: Report<'_>,
 ) -> Result<FitEnd, UserError> {
     let end = fit_forever(settings, stop, report);
-    (0..10_000).for_each(|_| std::thread::yield_now());
+    (0..100).for_each(|_| std::thread::yield_now());
     PUT_BACK.fetch_add(1, Ordering::SeqCst);
     end
 }
