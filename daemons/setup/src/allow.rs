@@ -8,8 +8,6 @@ use nix::unistd::geteuid;
 use crate::attached::{Places, hid, rules};
 use crate::error::{RuleError, SetupError};
 
-/// Where udev reads the rule.
-pub const RULE: &str = "/etc/udev/rules.d/70-maulstick.rules";
 /// Shell command that installs the rule and has it hold for what is attached, before it returns.
 const INSTALL: &str = "umask 022 && cat > /etc/udev/rules.d/70-maulstick.rules && udevadm control --reload && \
                        udevadm trigger && udevadm settle --timeout=5";

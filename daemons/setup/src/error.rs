@@ -7,7 +7,7 @@ use maulstick_rig::UserError;
 use maulstick_rig::user_devices::ALLOW_BY_HAND;
 use maulstick_types::nearest::choice;
 
-use crate::allow::RULE;
+use crate::attached::RULE;
 
 /// Reason why devices could not be set up as asked.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

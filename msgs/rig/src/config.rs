@@ -7,6 +7,7 @@ mod light;
 mod paint;
 mod palette;
 mod record;
+pub mod user_devices;
 mod wrong;
 
 use std::collections::BTreeMap;

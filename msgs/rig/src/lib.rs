@@ -77,12 +77,12 @@ pub mod sketches;
 pub mod stop;
 pub mod table_file;
 pub mod thread;
-pub mod user_devices;
 pub mod user_error;
 pub mod whole_path;
 
 pub use asker::asker;
 pub use config::RigConfig;
+pub use config::user_devices;
 pub use maulstick_files as files;
 pub use node_handle::{NodeArgs, NodeHandle};
 pub use sketches::Sketches;

@@ -22,6 +22,9 @@ use serde::Serialize;
 /// The rule by which udev lets a person at the machine use its devices.
 pub const UDEV_RULES: &str = include_str!("../../../../tools/udev/70-maulstick.rules");
 
+/// File in which udev reads the rule.
+pub const RULE: &str = "/etc/udev/rules.d/70-maulstick.rules";
+
 /// A device at a node below `/dev`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Attached {

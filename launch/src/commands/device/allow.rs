@@ -1,7 +1,8 @@
 //! `maulstick device allow`: installs the rule by which the user at this machine may use its devices.
 
 use clap::Args;
-use maulstick_device_setup::allow::{RULE, allow};
+use maulstick_device_setup::allow::allow;
+use maulstick_device_setup::attached::RULE;
 use maulstick_rig::UserError;
 
 use crate::commands::say;
