@@ -216,7 +216,7 @@ impl<'a> CellFit<'a> {
         if !has_last || self.other.energy < self.found.energy {
             std::mem::swap(&mut self.found, &mut self.other);
         }
-        if self.found.delta_e > FAR
+        if self.found.delta_e > RETRY_DELTA_E
             && let Some(masstones) = &self.target.masstones
         {
             self.start.resize(self.own.len(), 0.0);
