@@ -10,7 +10,7 @@ use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_canvas::relief::tooth_picture::PictureTooth;
 use maulstick_optics::PaintLibrary;
 use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
-use maulstick_types::values::{CellSide, Quantity as _};
+use maulstick_types::values::CellSide;
 use maulstick_types::{Mixture, Pose};
 
 use maulstick_models::{MODELS, model_called};

@@ -341,8 +341,8 @@ impl Painting {
     }
 
     /// The reason why its backend changed, returned once, after the stroke in which it changed.
-    pub fn take_fall(&mut self) -> Option<String> {
-        self.bench.backend.take_fall()
+    pub fn take_backend_change(&mut self) -> Option<String> {
+        self.bench.backend.take_backend_change()
     }
 
     /// A limit that its backend has met, returned once, after the stroke in which it did.

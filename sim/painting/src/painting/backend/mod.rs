@@ -64,7 +64,7 @@ impl Backend {
 
     /// Asks the models for what their backends have met.
     pub(super) fn find_facts(&mut self) {
-        self.fall.find(self.models.take_fall());
+        self.fall.find(self.models.take_backend_change());
         self.limit.find(self.models.take_limit());
     }
 
@@ -75,7 +75,7 @@ impl Backend {
     }
 
     /// Why a model changed its backend, returned once, after the stroke in which it did.
-    pub(super) fn take_fall(&mut self) -> Option<String> {
+    pub(super) fn take_backend_change(&mut self) -> Option<String> {
         self.fall.take()
     }
 

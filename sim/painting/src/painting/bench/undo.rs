@@ -164,7 +164,7 @@ impl Workbench {
         let effects = &step.effects;
         // Time would do again what is taken back.
         clock.stop(None);
-        self.past.record.turn(step);
+        self.past.record.move_to(step);
         for (place, change) in &*step.tiles {
             self.desk.surfaces.put(*place, change.end(to).clone());
         }
