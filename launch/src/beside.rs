@@ -75,7 +75,8 @@ pub fn run_given(matches: &ArgMatches) -> Result<(), UserError> {
 
 /// Runs another program for a command that is unknown here; otherwise exits with the error.
 ///
-/// # Errors A [`UserError`] where the program cannot be started.
+/// # Errors
+/// A [`UserError`] where the program cannot be started.
 pub fn run_unknown(error: &clap::Error) -> Result<i32, UserError> {
     let mut line = std::env::args_os().skip(1);
     if let (ErrorKind::InvalidSubcommand, Some(ContextValue::String(name)), Some(first)) = (
@@ -130,7 +131,8 @@ pub fn tool<C: Subcommand>(carry_out: impl FnOnce(&C) -> Result<i32, UserError>)
 
 /// Removes unfinished files when a signal ends this process.
 ///
-/// # Errors A [`UserError`] where signals cannot be watched.
+/// # Errors
+/// A [`UserError`] where signals cannot be watched.
 pub fn clear_files_on_signals() -> Result<(), UserError> {
     clear_on_signals(EXIT_INTERRUPTED)
         .map_err(|error| UserError::failure(format!("cannot watch for signals: {error}")))

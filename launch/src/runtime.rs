@@ -12,7 +12,8 @@ const WORKERS: usize = 2;
 
 /// Runs a command to its end and abandons its background work.
 ///
-/// # Errors That of the command, or a [`UserError`] where no thread can be started.
+/// # Errors
+/// That of the command, or a [`UserError`] where no thread can be started.
 pub fn block_on<T>(command: impl Future<Output = Result<T, UserError>>) -> Result<T, UserError> {
     // Zenoh blocks in place, which a runtime of one thread does not allow.
     let runtime = Builder::new_multi_thread()

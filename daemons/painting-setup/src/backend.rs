@@ -14,7 +14,8 @@ const PLACE: &str = "backend of [paint], or --backend";
 /// `auto` uses a separate graphics processor, for steps that it computes faster; `gpu` uses any, for all steps that it
 /// can compute.
 ///
-/// # Errors A [`UserError`] if a GPU is required and there is none.
+/// # Errors
+/// A [`UserError`] if a GPU is required and there is none.
 pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), UserError> {
     let choice = match backend {
         "cpu" => return Ok(()),

@@ -59,21 +59,6 @@ pub fn parse_cell_mm(text: &str) -> Result<f64, CellError> {
     }
 }
 
-/// A text that is no side of a cell.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum CellError {
-    /// No number.
-    #[error("'{0}' is not a number of mm such as {PICTURE_CELL_MM}")]
-    NoNumber(String),
-    /// Out of range.
-    #[error(
-        "cells of {0} mm; choose {least} to {most} mm, such as {PICTURE_CELL_MM}",
-        least = CELLS_MM.start(),
-        most = CELLS_MM.end()
-    )]
-    Range(String),
-}
-
 /// The settings of a picture for which no rig is given.
 #[must_use]
 pub fn picture_settings() -> RigConfig {
@@ -150,7 +135,8 @@ pub fn check_speed(canvas: &CanvasSection, slowness: Slowness) -> Result<(), Use
 
 /// Checks that there is memory for a canvas without a file. The pages of one in a file can leave memory.
 ///
-/// # Errors A [`UserError`] with the memory needed.
+/// # Errors
+/// A [`UserError`] with the memory needed.
 pub fn check_memory(canvas: &CanvasSection) -> Result<(), UserError> {
     let [width, height] = canvas.cells().map(f64::from);
     let bytes = width * height * CELL_BYTES;

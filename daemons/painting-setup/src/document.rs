@@ -19,7 +19,8 @@ use crate::refusal::refused;
 
 /// A painting for reading only.
 ///
-/// # Errors A [`UserError`] if it does not exist, or cannot be read.
+/// # Errors
+/// A [`UserError`] if it does not exist, or cannot be read.
 pub fn read(path: &Path) -> Result<(Document, Opened), UserError> {
     let settings = DocumentSettings::new(path, Access::Read);
     let (document, opened) = Document::open(&settings).map_err(|error| wrong(path, &error))?;
@@ -29,7 +30,8 @@ pub fn read(path: &Path) -> Result<(Document, Opened), UserError> {
 
 /// Copies a painting that is not open, including the files left by a crash.
 ///
-/// # Errors A [`UserError`] where it cannot be read, or the copy not be written.
+/// # Errors
+/// A [`UserError`] where it cannot be read, or the copy not be written.
 pub fn copy_closed(from: &Path, to: &Path) -> Result<(), UserError> {
     for suffix in ["", "-wal"] {
         let [from, to] = [from, to].map(|path| companion(path, suffix));
@@ -46,7 +48,8 @@ pub fn copy_closed(from: &Path, to: &Path) -> Result<(), UserError> {
 
 /// A painting from its file, or a new one by the settings. Also the newest tile version in the file.
 ///
-/// # Errors A [`UserError`] where the file cannot be used, or the settings are invalid.
+/// # Errors
+/// A [`UserError`] where the file cannot be used, or the settings are invalid.
 pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u64), UserError> {
     go_on_by(config, path, Opened::sequencer)
 }
@@ -116,7 +119,8 @@ pub enum Presence {
 
 /// Checks, before anything is started, whether a painting can be continued in a file, or created there.
 ///
-/// # Errors A [`UserError`] where it cannot, or for an option that only a new painting takes.
+/// # Errors
+/// A [`UserError`] where it cannot, or for an option that only a new painting takes.
 pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, UserError> {
     if !glance(path).map_err(|error| wrong(path, &error))? {
         check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;

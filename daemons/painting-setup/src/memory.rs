@@ -8,7 +8,8 @@ use maulstick_rig::size::show_bytes;
 
 /// Checks that there is memory for `what`.
 ///
-/// # Errors A [`UserError`] where less than `bytes` are available.
+/// # Errors
+/// A [`UserError`] where less than `bytes` are available.
 pub fn check(what: &str, bytes: u64) -> Result<(), UserError> {
     match available().filter(|available| *available < bytes) {
         None => Ok(()),

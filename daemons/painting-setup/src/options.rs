@@ -103,7 +103,8 @@ pub fn parse_size(text: &str) -> Result<[u32; 2], SizeError> {
 impl KitOptions {
     /// Writes size, cells, brush, paints and light into the rig's settings, and returns the brush's section.
     ///
-    /// # Errors A [`UserError`] for an unknown brush, with the nearest name, and for too many cells.
+    /// # Errors
+    /// A [`UserError`] for an unknown brush, with the nearest name, and for too many cells.
     pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, UserError> {
         if let Some(cell_mm) = self.cell_mm {
             config.canvas.cell_mm = cell_mm;
@@ -196,7 +197,8 @@ impl PaintingOptions {
 
     /// [`KitOptions::apply`] with memory, history, record, backend and paint model.
     ///
-    /// # Errors As there, and for invalid sizes.
+    /// # Errors
+    /// As there, and for invalid sizes.
     pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, UserError> {
         if let Some(memory) = &self.memory {
             config.paint.memory.clone_from(memory);

@@ -156,7 +156,8 @@ pub struct Relayed {
 impl Relayed {
     /// A file of a kind that [`check_outputs`] has found writable.
     ///
-    /// # Errors A [`UserError`] where the path is not UTF-8, or the current folder is gone.
+    /// # Errors
+    /// A [`UserError`] where the path is not UTF-8, or the current folder is gone.
     pub fn new(path: &Path, kind: Kind) -> Result<Self, UserError> {
         let to = PathBuf::from(whole_path(path)?.as_str());
         let written = if gives_way(&to, kind) {
@@ -170,53 +171,22 @@ impl Relayed {
 
     /// The name for the node.
     ///
-    /// # Errors A [`UserError`] where it is not UTF-8.
+    /// # Errors
+    /// A [`UserError`] where it is not UTF-8.
     pub fn asked(&self) -> Result<WholePath, UserError> {
         whole_path(&self.written)
     }
 
     /// Renames the file once the node has written it, and puts its name into the node's answer.
     ///
-    /// # Errors A [`UserError`] where it cannot be renamed; it stays beside that name.
+    /// # Errors
+    /// A [`UserError`] where it cannot be renamed; it stays beside that name.
     pub fn arrive(&self, said: &str) -> Result<String, UserError> {
         if self.written != self.to {
             std::fs::rename(&self.written, &self.to)
                 .map_err(|error| UserError::writing(&self.to, &error))?;
         }
         Ok(said.replace(&*self.asked()?, &self.to.display().to_string()))
-    }
-}
-
-/// An output that may not have its name.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Clash {
-    /// It is this input.
-    Input(UsedFile, UsedFile),
-    /// It is this other output.
-    Output(UsedFile, UsedFile),
-    /// It is a file that SQLite may keep beside a painting.
-    Companion(UsedFile),
-}
-
-impl From<Clash> for UserError {
-    fn from(clash: Clash) -> Self {
-        let (output, what) = match clash {
-            Clash::Input(output, input) => {
-                let what = format!("{} would take the place of {}", output.what, input.what);
-                (output, what)
-            }
-            Clash::Output(output, other) => {
-                let what = format!("{} and {} would be one file", other.what, output.what);
-                (output, what)
-            }
-            Clash::Companion(output) => {
-                let what = "a file with this extension may belong to a painting";
-                (output, what.to_owned())
-            }
-        };
-        Self::usage(what)
-            .at(output.path.display().to_string())
-            .help(format!("give {} another name", output.what))
     }
 }
 

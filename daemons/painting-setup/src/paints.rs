@@ -27,7 +27,7 @@ pub fn library_from(path: Option<&Path>) -> Result<PaintLibrary, UserError> {
     };
     let text = read_table(path, MOST_BYTES)?;
     PaintLibrary::parse(&text).map_err(|error| match error {
-        PaintError::File { line, what } => UserError::usage(what)
+        PaintError::File { line, fault } => UserError::usage(fault.to_string())
             .at(format!("{}:{line}", path.display()))
             .help("a row: paint, colour index, source, K or S, then 101 values, 380 to 780 nm"),
         other => refused(other),

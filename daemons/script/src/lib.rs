@@ -128,7 +128,8 @@ pub struct Script {
 impl Script {
     /// Reads a script, with its takes, brushes and pictures.
     ///
-    /// # Errors A [`UserError`] with file, line and remedy.
+    /// # Errors
+    /// A [`UserError`] with file, line and remedy.
     pub fn read(path: &Path, library: &PaintLibrary) -> Result<Self, UserError> {
         let text = std::fs::read_to_string(path).map_err(|error| {
             let fault = UserError::reading(path, &error);

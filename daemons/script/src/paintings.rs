@@ -62,7 +62,8 @@ pub struct BoardOptions {
 impl BoardOptions {
     /// The requested canvas.
     ///
-    /// # Errors A [`UserError`] for an unknown model.
+    /// # Errors
+    /// A [`UserError`] for an unknown model.
     pub fn board(&self) -> Result<Board, UserError> {
         let board = Board::new(self.cells.side_mm());
         let Some(model) = &self.model else {

@@ -55,7 +55,8 @@ impl<'a> ScriptRunner<'a> {
 
     /// Does the steps of a script, in order.
     ///
-    /// # Errors A [`UserError`] with file and line of the refused step; those before it are done.
+    /// # Errors
+    /// A [`UserError`] with file and line of the refused step; those before it are done.
     pub fn follow_script(&mut self, script: Script) -> Result<(), UserError> {
         self.bar.inc_length(script.steps.len() as u64);
         let done = script.steps.into_iter().try_for_each(|(place, act)| {

@@ -100,7 +100,8 @@ impl<const GROUP: usize> FromArgMatches for EditCommand<GROUP> {
 
 /// Applies an edit to the painting of a running rig, with its file, and prints the result.
 ///
-/// # Errors A [`UserError`] with the refusal of the painting, where no rig runs, and for a file that cannot be read.
+/// # Errors
+/// A [`UserError`] with the refusal of the painting, where no rig runs, and for a file that cannot be read.
 pub fn run<const GROUP: usize>(command: &EditCommand<GROUP>) -> Result<i32, UserError> {
     let mut edit = command.edit.clone();
     let known = edits::read(&edit)?;

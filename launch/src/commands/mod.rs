@@ -64,14 +64,16 @@ pub use say;
 
 /// Prints one line, whatever the names in it contain.
 ///
-/// # Errors As [`print_text`].
+/// # Errors
+/// As [`print_text`].
 pub fn print_line(line: &str) -> Result<(), UserError> {
     print_text(&format!("{}\n", maulstick_types::plain(line)))
 }
 
 /// Prints text; a reader that closes the pipe, such as `head`, is no error.
 ///
-/// # Errors A [`UserError`] where it cannot be written.
+/// # Errors
+/// A [`UserError`] where it cannot be written.
 pub fn print_text(text: &str) -> Result<(), UserError> {
     match maulstick_rig::log::print(text) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -101,7 +103,8 @@ pub fn print_json_line(value: &Value) -> Result<(), UserError> {
 
 /// Writes a take and prints a summary.
 ///
-/// # Errors A [`UserError`] where the file cannot be written.
+/// # Errors
+/// A [`UserError`] where the file cannot be written.
 pub fn write_take(take: &Take, path: &Path) -> Result<(), UserError> {
     take.write(path)?;
     say!(

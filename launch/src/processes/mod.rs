@@ -49,7 +49,8 @@ pub(crate) enum NodeCommand {
 
 /// Runs a process of a rig until it is told to stop.
 ///
-/// # Errors A [`UserError`].
+/// # Errors
+/// A [`UserError`].
 pub(crate) fn run(command: &NodeCommand) -> Result<i32, UserError> {
     command.program().name_this_process();
     match command {

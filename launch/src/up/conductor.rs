@@ -143,7 +143,8 @@ impl Conductor {
 
     /// Writes the picture once paint has consumed the end of the take; true when it is written.
     ///
-    /// # Errors A [`UserError`] where it cannot be written.
+    /// # Errors
+    /// A [`UserError`] where it cannot be written.
     pub fn snapshot(&mut self, bus: &Arc<dyn Bus>, topics: &Topics) -> Result<bool, UserError> {
         let Some(end) = &self.end else {
             return Ok(false);

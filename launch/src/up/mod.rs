@@ -211,7 +211,8 @@ impl UpOptions {
 
 /// Runs the rig until it is told to stop.
 ///
-/// # Errors A [`UserError`] for bad settings or input, an occupied name, or nodes that keep failing.
+/// # Errors
+/// A [`UserError`] for bad settings or input, an occupied name, or nodes that keep failing.
 pub fn run(options: &UpOptions) -> Result<i32, UserError> {
     if options.print_config {
         crate::commands::print_text(DEFAULT)?;

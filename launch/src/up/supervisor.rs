@@ -181,7 +181,8 @@ impl Supervisor {
 
     /// Runs the rig until it is told to stop, and returns the exit code.
     ///
-    /// # Errors A [`UserError`] where an indispensable node keeps failing.
+    /// # Errors
+    /// A [`UserError`] where an indispensable node keeps failing.
     pub async fn run(mut self, mut signals: EndSignals) -> Result<i32, UserError> {
         let end = loop {
             let now = Instant::now();

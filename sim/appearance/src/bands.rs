@@ -33,7 +33,8 @@ const CACHED_BANDS: usize = 6;
 /// Does `jobs` jobs on two threads and passes the results to `take`, on this thread and in order, with the number of
 /// the job. At most four results wait.
 ///
-/// # Errors The first error of `take`, after which no more jobs begin.
+/// # Errors
+/// The first error of `take`, after which no more jobs begin.
 pub fn in_order<T: Send, E>(
     jobs: usize,
     job: impl Fn(usize) -> T + Sync,

@@ -56,7 +56,8 @@ pub struct Document {
 impl Document {
     /// Opens a painting, or creates its file: then there is no [`Opened`].
     ///
-    /// # Errors Any [`DocumentError`]; the file is unchanged.
+    /// # Errors
+    /// Any [`DocumentError`]; the file is unchanged.
     pub fn open(settings: &DocumentSettings) -> Result<(Self, Option<Opened>), DocumentError> {
         let vfs = settings.vfs.as_deref();
         let (database, new) = Database::open(&settings.path, settings.access, vfs)?;
@@ -106,7 +107,8 @@ impl Document {
     /// painting, and is written completely or not at all; after that [`limit_memory`](Self::limit_memory) lets pages
     /// leave memory.
     ///
-    /// # Errors [`DocumentError::Taken`] if the file exists, or the reason why it cannot be created.
+    /// # Errors
+    /// [`DocumentError::Taken`] if the file exists, or the reason why it cannot be created.
     pub fn begin(settings: &DocumentSettings, pager: &Arc<Pager>) -> Result<Self, DocumentError> {
         make_room(&settings.path, false)?;
         let vfs = settings.vfs.as_deref();
@@ -267,7 +269,8 @@ impl Document {
     /// Records from a serial number on, as many as a row of the file has; `None` at the end. Records that are handed
     /// over but not written are left out.
     ///
-    /// # Errors [`DocumentError::Damaged`] if it is not intact, or the reason why it cannot be read.
+    /// # Errors
+    /// [`DocumentError::Damaged`] if it is not intact, or the reason why it cannot be read.
     pub fn record_row(&self, serial: u64) -> Result<Option<RecordRow>, DocumentError> {
         let row = self.shared.request(|answer| Fetch::Records(serial, answer));
         row.unwrap_or_else(|| Err(DocumentError::Other(CLOSED.to_owned())))

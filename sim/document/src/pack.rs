@@ -67,7 +67,8 @@ pub fn pack(
 
 /// Replays the journal of a closed painting and writes the result; deletes the parts in `forget`.
 ///
-/// # Errors Any [`DocumentError`].
+/// # Errors
+/// Any [`DocumentError`].
 pub fn replay_journal(path: &Path, forget: Forget) -> Result<(), DocumentError> {
     let (document, opened) = Document::open(&DocumentSettings::new(path, Access::Paint))?;
     let Some(opened) = opened else {

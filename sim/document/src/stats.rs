@@ -75,7 +75,8 @@ impl DocumentStats {
 
     /// Reads every page, of the painting and of its history.
     ///
-    /// # Errors [`DocumentError::Damaged`] with the first damaged one.
+    /// # Errors
+    /// [`DocumentError::Damaged`] with the first damaged one.
     pub fn check(
         &self,
         path: &Path,

@@ -10,7 +10,8 @@ use crate::read_image::Image;
 
 /// A picture as a ground of a surface of `cells`, 8-bit RGB PNG: a pixel a cell, coarser on very large surfaces.
 ///
-/// # Errors [`ImportError`].
+/// # Errors
+/// [`ImportError`].
 pub fn ground(image: &Image, cells: [u32; 2]) -> Result<Arc<[u8]>, ImportError> {
     let all = u64::from(cells[0]) * u64::from(cells[1]);
     let mut coarse = 1u32;
@@ -27,7 +28,8 @@ pub fn ground(image: &Image, cells: [u32; 2]) -> Result<Arc<[u8]>, ImportError> 
 /// A picture as a tooth that is `width_mm` wide on cells of `cell_m`, 16-bit grey PNG: as fine as the picture, but no
 /// finer than the cells, and coarser for very many pixels.
 ///
-/// # Errors [`ImportError`].
+/// # Errors
+/// [`ImportError`].
 pub fn tooth(image: &Image, width_mm: f64, cell_m: f64) -> Result<Arc<[u8]>, ImportError> {
     let pixels = image.size();
     let cells = (width_mm * 1e-3 / cell_m).round().max(1.0) as usize;

@@ -144,7 +144,8 @@ fn mean<const C: usize>(taps: &Taps, row: &[[f32; C]]) -> [f64; C] {
 
 /// The colours of a canvas's cells from a picture that covers it, centred, with the excess cut off.
 ///
-/// # Errors [`ImportError::Canvas`] for more than 67 million cells.
+/// # Errors
+/// [`ImportError::Canvas`] for more than 67 million cells.
 pub fn colours(image: &Image, cells: [usize; 2]) -> Result<Raster, ImportError> {
     let [across, up] = cells.map(|cells| cells.max(1));
     if across as u64 * up as u64 > MOST_PIXELS {
@@ -172,7 +173,8 @@ pub fn colours(image: &Image, cells: [usize; 2]) -> Result<Raster, ImportError> 
 
 /// A whole picture as heights at `size` pixels, 0 to 65535, row by row from the top.
 ///
-/// # Errors As [`colours`].
+/// # Errors
+/// As [`colours`].
 pub fn heights(image: &Image, size: [usize; 2]) -> Result<Vec<u16>, ImportError> {
     let [across, down] = size.map(|pixels| pixels.max(1));
     if across as u64 * down as u64 > MOST_PIXELS {

@@ -77,7 +77,8 @@ pub struct Order {
 impl Order {
     /// Writes a painting; returns a note about the file, which may be empty.
     ///
-    /// # Errors [`ExchangeError`].
+    /// # Errors
+    /// [`ExchangeError`].
     pub fn write(
         &self,
         painting: &mut Painting,

@@ -53,7 +53,8 @@ impl HeightRange {
 /// Writes the heights of a surface as a grey PNG of 16 bits, linear between the range that is returned and stored in
 /// its `tEXt`, in micrometres. `pHYs` has the size of a cell.
 ///
-/// # Errors [`ExchangeError`].
+/// # Errors
+/// [`ExchangeError`].
 pub fn write_height_map(
     painting: &mut Painting,
     surface: u32,

@@ -14,7 +14,8 @@ use crate::surface::{Progress, Steps, check_whole};
 /// `export`: the profile is embedded, and `pHYs` has the size of a cell. With 8 bits a channel these are the bytes of
 /// [`Picture::encode_png`](maulstick_appearance::picture::Picture::encode_png).
 ///
-/// # Errors [`ExchangeError`].
+/// # Errors
+/// [`ExchangeError`].
 pub fn write_lit_png(
     painting: &mut Painting,
     surface: u32,

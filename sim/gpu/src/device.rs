@@ -235,7 +235,8 @@ impl Device {
 
     /// Runs `work` with the device; a device error meanwhile is the result.
     ///
-    /// # Errors [`GpuError`].
+    /// # Errors
+    /// [`GpuError`].
     pub fn guarded<T>(&self, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
         self.check_lost()?;
         let filters = [
@@ -264,7 +265,8 @@ impl Device {
 
     /// Waits until the device has finished all submissions.
     ///
-    /// # Errors [`GpuError::Lost`].
+    /// # Errors
+    /// [`GpuError::Lost`].
     pub fn wait(&self) -> Result<(), GpuError> {
         self.poll(wgpu::PollType::Wait {
             submission_index: None,

@@ -30,7 +30,8 @@ pub struct GpuFilms {
 impl GpuFilms {
     /// Films on a device.
     ///
-    /// # Errors A [`GpuError`] where the driver rejects the shaders.
+    /// # Errors
+    /// A [`GpuError`] where the driver rejects the shaders.
     pub fn new(gpu: Device) -> Result<Self, GpuError> {
         Self::with_buffers(gpu, BUFFER_BYTES)
     }

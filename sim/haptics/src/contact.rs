@@ -77,7 +77,8 @@ const LEAST_PROJECTION: f64 = 0.2;
 impl Contact {
     /// Converts a model for the servo.
     ///
-    /// # Errors The fault: a number that is not finite, a normal that is not a unit vector, a negative stiffness, a
+    /// # Errors
+    /// The fault: a number that is not finite, a normal that is not a unit vector, a negative stiffness, a
     /// force that falls with depth, more than five knots, a grain or a relief out of range, a time to live or a
     /// recovery of more than a second.
     pub fn new(model: &ContactModel) -> Result<Self, &'static str> {
@@ -86,7 +87,8 @@ impl Contact {
 
     /// Converts a model with its relief scaled by `share`, 0 to 1.
     ///
-    /// # Errors As [`new`](Self::new).
+    /// # Errors
+    /// As [`new`](Self::new).
     pub fn with_relief(model: &ContactModel, share: f64) -> Result<Self, &'static str> {
         let point = DVec3::from_array(model.plane_point_m);
         let normal = DVec3::from_array(model.plane_normal);

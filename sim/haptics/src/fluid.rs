@@ -63,7 +63,8 @@ impl Film {
 impl Fluid {
     /// Converts a message, with its force multiplied by `scale`. Angular parts are left out: the servo gives forces.
     ///
-    /// # Errors The fault: a number that is not finite, a Jacobian that drives the hand, a time to live or a recovery
+    /// # Errors
+    /// The fault: a number that is not finite, a Jacobian that drives the hand, a time to live or a recovery
     /// of more than a second.
     pub fn new(message: &FluidForce, scale: f64) -> Result<Self, &'static str> {
         let part = |of: &[f64; 6]| DVec3::new(of[0], of[1], of[2]);

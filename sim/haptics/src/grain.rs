@@ -38,7 +38,8 @@ fn next(state: &mut u64) -> f64 {
 impl Texture {
     /// Converts a grain.
     ///
-    /// # Errors The value out of range: the amplitude must be 0 to 1, the wavelength .2 mm at least.
+    /// # Errors
+    /// The value out of range: the amplitude must be 0 to 1, the wavelength .2 mm at least.
     pub fn new(grain: &Grain) -> Result<Self, &'static str> {
         let known = grain.amplitude.is_finite() && grain.wavelength_m.is_finite();
         if !known || !(0.0..=1.0).contains(&grain.amplitude) || grain.wavelength_m < FINEST_M {

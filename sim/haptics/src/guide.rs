@@ -74,7 +74,8 @@ pub struct Pull {
 impl Guide {
     /// Converts a guide.
     ///
-    /// # Errors The fault: a number that is not finite or out of range, a path of too few or too many points or without
+    /// # Errors
+    /// The fault: a number that is not finite or out of range, a path of too few or too many points or without
     /// length in the plane, a time to live of more than a second.
     pub fn new(model: &GuideModel) -> Result<Self, &'static str> {
         let normal = DVec3::from_array(model.normal);

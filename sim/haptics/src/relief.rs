@@ -68,7 +68,8 @@ impl Relief {
     /// Converts a patch over a plane of unit `normal`, with heights multiplied by `share`, 0 to 1. `None` where it is
     /// flat.
     ///
-    /// # Errors The fault: a number that is not finite, an axis that is not a unit vector in the plane, a cell that is
+    /// # Errors
+    /// The fault: a number that is not finite, an axis that is not a unit vector in the plane, a cell that is
     /// not of .25 to 25 mm, a number of heights that is not 256, a height of more than 5 mm.
     pub fn new(
         patch: &HeightPatch,

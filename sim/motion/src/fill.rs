@@ -50,7 +50,8 @@ struct Slot {
 /// Fills an outline with the strokes of an example, in its order: row by row, each stroke taken from the example with
 /// the length of its place.
 ///
-/// # Errors As [`Example::of`]; [`MotionError::NoRoom`], [`MotionError::TooMany`].
+/// # Errors
+/// As [`Example::of`]; [`MotionError::NoRoom`], [`MotionError::TooMany`].
 pub fn filled(
     example: &[TakeSample],
     outline: &Outline,

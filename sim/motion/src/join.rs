@@ -19,7 +19,8 @@ const RATE_HZ: f64 = 100.0;
 
 /// Joins motions. Between two of them the brush is lifted for `pause_s`, or longer for a long path, and paints nothing.
 ///
-/// # Errors [`MotionError::NoMotion`]; [`MotionError::OutOfRange`] of the pause.
+/// # Errors
+/// [`MotionError::NoMotion`]; [`MotionError::OutOfRange`] of the pause.
 pub fn joined(parts: &[&[TakeSample]], pause_s: f64) -> Result<Vec<TakeSample>, MotionError> {
     within("a pause of", pause_s, PAUSES_S)?;
     let mut all: Vec<TakeSample> = Vec::new();

@@ -48,7 +48,8 @@ impl Frame {
 impl Outline {
     /// The area of closed contours, each a list of points, m; the last one joins the first.
     ///
-    /// # Errors [`MotionError::NoArea`]; [`MotionError::OutOfRange`] for a point off the desk.
+    /// # Errors
+    /// [`MotionError::NoArea`]; [`MotionError::OutOfRange`] for a point off the desk.
     pub fn new(contours: &[Vec<[f64; 2]>]) -> Result<Self, MotionError> {
         for metres in contours.iter().flatten().flatten() {
             crate::error::within("a point at", *metres, -FARTHEST_M..=FARTHEST_M)?;

@@ -20,7 +20,8 @@ pub enum Pace {
 
 /// Retimes a motion with its velocities; its start stays.
 ///
-/// # Errors [`MotionError::OutOfRange`] of the rate; [`MotionError::Times`] where samples would coincide, and
+/// # Errors
+/// [`MotionError::OutOfRange`] of the rate; [`MotionError::Times`] where samples would coincide, and
 /// [`MotionError::Torn`] where those of a stroke would be too far apart.
 pub fn retimed(samples: &[TakeSample], pace: Pace) -> Result<Vec<TakeSample>, MotionError> {
     let begin_ns = samples.first().map_or(0, |first| first.time_ns);

@@ -155,7 +155,8 @@ impl Placement {
 
     /// A placed motion.
     ///
-    /// # Errors [`MotionError::OutOfRange`]; [`MotionError::Sample`] where it would leave the desk.
+    /// # Errors
+    /// [`MotionError::OutOfRange`]; [`MotionError::Sample`] where it would leave the desk.
     pub fn motion(
         &self,
         samples: &[TakeSample],

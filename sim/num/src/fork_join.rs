@@ -233,7 +233,8 @@ pub fn threads() -> usize {
 
 /// Does the work on each share, at the same time where [helpers](with_threads) are free.
 ///
-/// # Panics Like the work on a share, once all helpers have finished.
+/// # Panics
+/// Like the work on a share, once all helpers have finished.
 pub fn each<S: Send>(shares: &mut [S], work: impl Fn(&mut S) + Sync) {
     match shares {
         [] => {}

@@ -22,7 +22,8 @@ pub trait FilmBackend: Send {
 
     /// Linear sRGB, without gloss, of each tile: [`Studio::shade`].
     ///
-    /// # Errors A [`BackendError`]; after [`BackendError::Device`] [`CpuFilms`] can still compute the tiles.
+    /// # Errors
+    /// A [`BackendError`]; after [`BackendError::Device`] [`CpuFilms`] can still compute the tiles.
     fn shade(
         &mut self,
         studio: &Studio,
@@ -58,7 +59,8 @@ pub enum BackendError {
 
 /// Checks that tiles fit a studio.
 ///
-/// # Errors [`BackendError::Films`].
+/// # Errors
+/// [`BackendError::Films`].
 pub fn check(studio: &Studio, tiles: &[FilmPlanes<'_>]) -> Result<(), BackendError> {
     for (tile, films) in tiles.iter().enumerate() {
         let wrong = |what: String| Err(BackendError::Films { tile, what });

@@ -86,7 +86,8 @@ impl Profile {
 
     /// The profile of a display or printer, from the bytes of an ICC file.
     ///
-    /// # Errors [`ProfileError`].
+    /// # Errors
+    /// [`ProfileError`].
     pub fn read(icc: Vec<u8>) -> Result<Self, ProfileError> {
         let damaged = |what: &dyn fmt::Display| ProfileError::Damaged(what.to_string());
         let target = ColorProfile::new_from_slice(&icc).map_err(|error| damaged(&error))?;

@@ -49,7 +49,8 @@ impl Offline {
 
     /// [`new`](Self::new) with a painting that continues at its sequencer's state.
     ///
-    /// # Errors As [`new`](Self::new).
+    /// # Errors
+    /// As [`new`](Self::new).
     pub fn resume(
         mut sequencer: Sequencer,
         brush: &str,
@@ -85,7 +86,8 @@ impl Offline {
 
     /// Puts the brush down and takes up another one, with its last load; the take before has ended.
     ///
-    /// # Errors [`EditError`] where the painting refuses it.
+    /// # Errors
+    /// [`EditError`] where the painting refuses it.
     pub fn take_up(
         &mut self,
         brush: &str,

@@ -116,7 +116,8 @@ impl RecordedSession {
 
     /// Adds an entry of the journal; one from before the session is skipped.
     ///
-    /// # Errors [`SessionFault::Another`], or [`SessionFault::Entries`] where some are missing before it.
+    /// # Errors
+    /// [`SessionFault::Another`], or [`SessionFault::Entries`] where some are missing before it.
     pub fn entry(&mut self, header: &Header, entry: JournalEntry) -> Result<(), SessionFault> {
         if self.is_past() {
             return Ok(());
@@ -147,7 +148,8 @@ impl RecordedSession {
 
     /// The next complete record.
     ///
-    /// # Errors [`SessionFault::State`] where a later state of the same brush has arrived, and that of the record has
+    /// # Errors
+    /// [`SessionFault::State`] where a later state of the same brush has arrived, and that of the record has
     /// not.
     pub fn next_record(&mut self) -> Result<Option<Record>, SessionFault> {
         let index = self.next;
@@ -210,7 +212,8 @@ impl RecordedSession {
 
     /// Checks that nothing is left over, and that the requested place was reached.
     ///
-    /// # Errors [`SessionFault`] with the missing part.
+    /// # Errors
+    /// [`SessionFault`] with the missing part.
     pub fn end(&self) -> Result<(), SessionFault> {
         let (place, first) = (self.last, self.first);
         if place.checked_add(1).is_some_and(|next| next < first) {

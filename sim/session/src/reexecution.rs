@@ -60,7 +60,8 @@ fn tile_print(tile: &Tile) -> u64 {
 /// Passes on the records from a serial number on, in order, with the wall-clock time of writing, ms since 1970, if
 /// known.
 ///
-/// # Errors The first of `each`, or of a record that is not intact.
+/// # Errors
+/// The first of `each`, or of a record that is not intact.
 pub fn each_record<E: From<DocumentError>>(
     document: &Document,
     from: u64,
@@ -109,7 +110,8 @@ impl Reexecution {
 
     /// Passes on the rest of the record without replaying it.
     ///
-    /// # Errors As [`each_record`].
+    /// # Errors
+    /// As [`each_record`].
     pub fn look_ahead<E: From<DocumentError>>(
         &self,
         mut each: impl FnMut(&Record),

@@ -2,15 +2,14 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_brush::file::library::LIBRARY;
-use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::tile::TileId;
-use maulstick_optics::PaintLibrary;
+use maulstick_optics::{PaintError, PaintLibrary};
 use maulstick_painting::edits::{Load, Wells};
 use maulstick_painting::ledger::LedgerReport;
 use maulstick_painting::picture::unlit_picture;
 use maulstick_painting::setup::wells_of;
-use maulstick_painting::{Painting, PaintingSetup};
+use maulstick_painting::{EditError, Painting, PaintingSetup};
 use maulstick_session::Offline;
 use maulstick_types::Mixture;
 use maulstick_types::paint::TILE;
@@ -245,7 +244,7 @@ fn the_mixing_area_takes_and_gives_paint() {
 
 impl Hand {
     /// Lays other wells on the palette, as a client of the paint node would.
-    fn lay(&mut self, wells: Vec<Well>) -> Result<(), maulstick_painting::EditError> {
+    fn lay(&mut self, wells: Vec<Well>) -> Result<(), EditError> {
         let surface = PALETTE;
         self.offline.edit(Wells::new(surface, wells)?).map(drop)
     }
@@ -298,7 +297,7 @@ fn wells_beside_the_palette_or_of_unknown_paint_are_refused() {
     let unknown = wells_of(&[Mixture::pure("Colbat Blue")], cells, cell_m);
     let error = hand.lay(unknown).expect_err("unknown");
     assert!(
-        matches!(error, EditError::NoPaint { nearest: Some(near), .. } if near == "Cobalt Blue")
+        matches!(error, EditError::Paint(PaintError::Unknown { nearest: Some(near), .. }) if near == "Cobalt Blue")
     );
     let mut beside = wells_of(&[Mixture::pure("Cobalt Blue")], cells, cell_m);
     beside[0].center_m[0] = -1e-3;

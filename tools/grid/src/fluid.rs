@@ -137,7 +137,8 @@ impl Film {
 impl FluidRun {
     /// Runs the hand.
     ///
-    /// # Errors The defect of a wall or a force that is refused.
+    /// # Errors
+    /// The defect of a wall or a force that is refused.
     pub fn go(&self) -> Result<FluidOutcome, &'static str> {
         let mut servo = Servo::new(Limits {
             max_force_n: 3.3,

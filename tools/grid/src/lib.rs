@@ -313,7 +313,8 @@ impl Run {
 
     /// Runs the hand.
     ///
-    /// # Errors The defect of a wall that makes no contact model.
+    /// # Errors
+    /// The defect of a wall that makes no contact model.
     pub fn go(&self) -> Result<Outcome, &'static str> {
         let limits = self.limits();
         // The wall's friction across the kick would hide the guide's gain.

@@ -217,7 +217,8 @@ impl ReliefRun {
 
     /// Runs the hand.
     ///
-    /// # Errors The defect of a wall, a guide or a film that is refused.
+    /// # Errors
+    /// The defect of a wall, a guide or a film that is refused.
     pub fn go(&self) -> Result<ReliefOutcome, &'static str> {
         let mut servo = Servo::new(self.run.limits());
         let mut plant = Plant::omni(self.run.hand, self.target(0.0));

@@ -23,7 +23,8 @@ fn main() {
 
 /// Runs the subcommand.
 ///
-/// # Errors A [`UserError`] where a take cannot be read or written, or the operation is refused.
+/// # Errors
+/// A [`UserError`] where a take cannot be read or written, or the operation is refused.
 fn run(command: &MotionCommand) -> Result<i32, UserError> {
     match command {
         MotionCommand::Strokes(options) => info::run(options),

@@ -26,7 +26,8 @@ type Contours = Vec<Vec<[f64; 2]>>;
 
 /// Reads an outline. `head_m` is the length of the 6-DOF stylus's head that drew it, m.
 ///
-/// # Errors A [`UserError`] for a file that cannot be read or encloses nothing.
+/// # Errors
+/// A [`UserError`] for a file that cannot be read or encloses nothing.
 pub(crate) fn read_outline(path: &Path, head_m: f64) -> Result<Outline, UserError> {
     let bytes = std::fs::read(path).map_err(|error| UserError::reading(path, &error))?;
     let contours = if bytes.starts_with(MCAP) {

@@ -30,7 +30,8 @@ const GRAIN_MM: f64 = 0.5;
 
 /// A brush at another width, mm; a library brush is scaled from its own numbers, so that they do not drift.
 ///
-/// # Errors As [`BrushFile::scaled_to`].
+/// # Errors
+/// As [`BrushFile::scaled_to`].
 pub(crate) fn resized(file: &BrushFile, width_mm: f64) -> Result<BrushFile, BrushError> {
     match of_library(&file.kind).filter(|_| is_of_library(file)) {
         Some(own) => own.scaled_to(width_mm),

@@ -154,7 +154,7 @@ fn paint_dries_by_the_clock_of_the_node_and_each_tick_is_in_the_journal() {
     net.advance(5_000_000_000);
     node.poll().expect("a turn");
     assert_eq!(node.sequencer.painting().clock().ticks, 0, "nothing dries");
-    done(&mut node, 2, over(90));
+    ask(&mut node, 2, over(90));
     let begun = node.sequencer.journal_next();
     for turn in 0..=200u64 {
         node.poll().expect("a turn");

@@ -33,7 +33,8 @@ pub enum GroundFile {
 impl GroundFile {
     /// Reads a name, a CSV file of nm,reflectance, or a picture.
     ///
-    /// # Errors A [`UserError`] where a file cannot be read or is neither, with file and line.
+    /// # Errors
+    /// A [`UserError`] where a file cannot be read or is neither, with file and line.
     pub fn read(name: &str) -> Result<Self, UserError> {
         let path = Path::new(name);
         if !is_path(name) {
@@ -60,7 +61,8 @@ impl GroundFile {
 
     /// A picture for surfaces with this number of cells, a PNG; `None` if it is no picture.
     ///
-    /// # Errors A [`UserError`] if the surface is too large for it.
+    /// # Errors
+    /// A [`UserError`] if the surface is too large for it.
     pub fn picture(&self, cells: [u32; 2]) -> Result<Option<Arc<[u8]>>, UserError> {
         let Self::Picture(image, name) = self else {
             return Ok(None);

@@ -8,7 +8,8 @@ use maulstick_rig::log::say;
 
 /// Reads a picture, with a warning where its colours may be off.
 ///
-/// # Errors A [`UserError`] where it cannot be read or is none.
+/// # Errors
+/// A [`UserError`] where it cannot be read or is none.
 pub fn open_picture(path: &Path) -> Result<Image, UserError> {
     let image = Image::open(path).map_err(|error| no_picture(path, &error))?;
     if let Some(mark) = image.unused_mark() {

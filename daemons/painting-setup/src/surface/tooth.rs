@@ -25,7 +25,8 @@ pub struct ToothPicture {
 impl ToothPicture {
     /// A picture with a width on the canvas, or that of the canvas, and a depth.
     ///
-    /// # Errors A [`UserError`] for sizes out of range.
+    /// # Errors
+    /// A [`UserError`] for sizes out of range.
     pub fn new(
         image: Image,
         file: &str,

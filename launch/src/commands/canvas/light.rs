@@ -37,7 +37,8 @@ impl LightOptions {
 
 /// Changes the light and waits until the dry layers are recomputed; without changes it only prints the light.
 ///
-/// # Errors A [`UserError`] for an invalid light, or if no rig runs.
+/// # Errors
+/// A [`UserError`] for an invalid light, or if no rig runs.
 pub(super) fn run(options: &LightOptions) -> Result<i32, UserError> {
     // An invalid change is refused even if no rig runs.
     let change = &options.change;

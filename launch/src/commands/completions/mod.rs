@@ -40,7 +40,8 @@ pub enum CompletionsCommand {
 
 /// Writes the requested pages of a program whose commands have these headings.
 ///
-/// # Errors A [`UserError`] where the pages cannot be written.
+/// # Errors
+/// A [`UserError`] where the pages cannot be written.
 pub(crate) fn run(
     wanted: &CompletionsCommand,
     program: clap::Command,

@@ -30,7 +30,8 @@ pub struct AddOptions {
 
 /// Adds a device.
 ///
-/// # Errors A [`UserError`] where none or several fit, it is invalid, or it cannot be saved.
+/// # Errors
+/// A [`UserError`] where none or several fit, it is invalid, or it cannot be saved.
 pub(super) fn run(options: &AddOptions) -> Result<i32, UserError> {
     let new = NewDevice {
         name: options.device.clone(),

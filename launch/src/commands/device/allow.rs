@@ -13,7 +13,8 @@ pub struct AllowOptions {}
 
 /// Writes the rule, as root or with `pkexec`, which asks for the password.
 ///
-/// # Errors A [`UserError`] with the command to type if that fails.
+/// # Errors
+/// A [`UserError`] with the command to type if that fails.
 pub(super) fn run(_: &AllowOptions) -> Result<i32, UserError> {
     allow()?;
     say!("the user at this machine may use its devices: {RULE}");

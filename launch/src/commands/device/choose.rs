@@ -69,7 +69,8 @@ impl FromStr for PressureCurve {
 
 /// Changes a device.
 ///
-/// # Errors A [`UserError`] where there is no such device, or the change does not fit.
+/// # Errors
+/// A [`UserError`] where there is no such device, or the change does not fit.
 pub(super) fn run(options: &UseOptions) -> Result<i32, UserError> {
     let curve = options.pressure_curve.as_ref();
     let wanted = DeviceChange {

@@ -29,7 +29,8 @@ pub struct FitOptions {
 
 /// Guides a hand to the corners and saves them; a running rig releases the device meanwhile.
 ///
-/// # Errors A [`UserError`] for an absent device, corners that do not fit the canvas, or settings that cannot be
+/// # Errors
+/// A [`UserError`] for an absent device, corners that do not fit the canvas, or settings that cannot be
 /// written.
 pub(super) fn run(options: &FitOptions) -> Result<i32, UserError> {
     // A signal ends the fit, which puts the device back.

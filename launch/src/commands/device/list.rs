@@ -27,7 +27,8 @@ pub struct ListOptions {
 
 /// Lists the attached devices.
 ///
-/// # Errors A [`UserError`] where it cannot be printed.
+/// # Errors
+/// A [`UserError`] where it cannot be printed.
 pub(super) fn run(options: &ListOptions) -> Result<i32, UserError> {
     if options.udev {
         print_text(&rules(&hid::devices(&Places::here())))?;

@@ -21,7 +21,8 @@ pub struct RenameOptions {
 
 /// Renames a device.
 ///
-/// # Errors A [`UserError`] where the user has no such device, the name is taken or invalid, or the rig refuses it;
+/// # Errors
+/// A [`UserError`] where the user has no such device, the name is taken or invalid, or the rig refuses it;
 /// nothing is changed then.
 pub(super) fn run(options: &RenameOptions) -> Result<i32, UserError> {
     let (device, name) = (&options.device, &options.new_name);

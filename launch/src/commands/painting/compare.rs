@@ -26,7 +26,8 @@ const WHITE: f64 = 20.0;
 
 /// Draws `one`, `other` and their difference, left to right, and prints their distance.
 ///
-/// # Errors A [`UserError`] for an unknown version, or a picture that cannot be written.
+/// # Errors
+/// A [`UserError`] for an unknown version, or a picture that cannot be written.
 pub(super) fn compare(
     path: &Path,
     [one, other]: [&str; 2],

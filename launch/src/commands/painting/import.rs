@@ -65,7 +65,8 @@ pub struct ImportOptions {
 
 /// Imports a picture into a painting.
 ///
-/// # Errors A [`UserError`] where picture or painting cannot be read; the painting is then unchanged.
+/// # Errors
+/// A [`UserError`] where picture or painting cannot be read; the painting is then unchanged.
 pub(super) fn run(options: &ImportOptions) -> Result<i32, UserError> {
     let path = &options.file;
     there(path)?;

@@ -32,7 +32,8 @@ pub struct InfoOptions {
 
 /// Shows the contents of a painting.
 ///
-/// # Errors A [`UserError`] where it cannot be read, or is damaged.
+/// # Errors
+/// A [`UserError`] where it cannot be read, or is damaged.
 pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
     let path = &options.file;
     let mut stats = DocumentStats::read(path).map_err(|error| wrong(path, &error))?;

@@ -35,7 +35,8 @@ pub struct LogOptions {
 
 /// Lists the actions in a painting since its record began.
 ///
-/// # Errors A [`UserError`] where it cannot be read, or has no record.
+/// # Errors
+/// A [`UserError`] where it cannot be read, or has no record.
 pub(super) fn run(options: &LogOptions) -> Result<i32, UserError> {
     let path = &options.file;
     let mut devices = match &options.rig {

@@ -27,7 +27,8 @@ pub struct OpenOptions {
 
 /// Opens another painting in the running rig.
 ///
-/// # Errors A [`UserError`] where it cannot be opened, or where no rig runs.
+/// # Errors
+/// A [`UserError`] where it cannot be opened, or where no rig runs.
 pub fn run(options: &OpenOptions) -> Result<i32, UserError> {
     let command = RigCommand::Open {
         path: whole_path(&options.file)?,

@@ -25,7 +25,8 @@ pub struct PackOptions {
 
 /// Packs a painting.
 ///
-/// # Errors A [`UserError`] where it cannot be read or written; it is then unchanged.
+/// # Errors
+/// A [`UserError`] where it cannot be read or written; it is then unchanged.
 pub(super) fn run(options: &PackOptions) -> Result<i32, UserError> {
     let path = &options.file;
     let forget = match (options.forget_history, options.forget_record) {

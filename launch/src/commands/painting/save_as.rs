@@ -24,7 +24,8 @@ pub struct SaveAsOptions {
 
 /// Moves the painting to another file, where it continues.
 ///
-/// # Errors A [`UserError`] where it cannot be written there, or where no rig runs.
+/// # Errors
+/// A [`UserError`] where it cannot be written there, or where no rig runs.
 pub fn run(options: &SaveAsOptions) -> Result<i32, UserError> {
     let command = RigCommand::SaveAs(SaveAs {
         path: whole_path(&options.file)?,

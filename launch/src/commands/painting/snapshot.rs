@@ -31,7 +31,8 @@ pub struct SnapshotOptions {
 
 /// Writes a picture of the canvas.
 ///
-/// # Errors A [`UserError`] where it cannot be written, or where no rig runs.
+/// # Errors
+/// A [`UserError`] where it cannot be written, or where no rig runs.
 pub fn snapshot(options: &SnapshotOptions) -> Result<i32, UserError> {
     let picture = UsedFile::new("the picture", &options.output).of(Kind::Png);
     let ledger = UsedFile::written("the ledger", options.ledger.as_ref(), Kind::Ledger);

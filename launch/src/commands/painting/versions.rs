@@ -71,7 +71,8 @@ impl VersionsOptions {
 
 /// Lists versions, or applies the requested edit.
 ///
-/// # Errors A [`UserError`] for an unknown version, or where there is no painting.
+/// # Errors
+/// A [`UserError`] for an unknown version, or where there is no painting.
 pub(super) fn run(options: &VersionsOptions) -> Result<i32, UserError> {
     let edit = options.edit();
     let Some(path) = &options.file else {

@@ -39,7 +39,8 @@ const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Prints messages until Ctrl-C.
 ///
-/// # Errors A [`UserError`] if no rig runs, or for a field that a message lacks.
+/// # Errors
+/// A [`UserError`] if no rig runs, or for a field that a message lacks.
 pub(super) fn run(options: &EchoOptions) -> Result<i32, UserError> {
     let mut listener = Listener::open(options.target.rig(), &options.topic)?;
     let mut printer = Printer::new(options);

@@ -16,7 +16,8 @@ use super::message_lines::decoded;
 /// Writes the messages of topics, by their channel numbers, that arrived in a range of times, rig clock, ns; returns
 /// their number.
 ///
-/// # Errors A [`UserError`] where a file cannot be read or written, or a message cannot be decoded.
+/// # Errors
+/// A [`UserError`] where a file cannot be read or written, or a message cannot be decoded.
 pub(super) fn write(
     recording: &mut Recording,
     topics: &BTreeMap<u16, Topic>,

@@ -46,7 +46,8 @@ enum Form {
 impl GraphOptions {
     /// The requested form.
     ///
-    /// # Errors A [`UserError`] for a file name without a known form, or with another one.
+    /// # Errors
+    /// A [`UserError`] for a file name without a known form, or with another one.
     fn form(&self) -> Result<Form, UserError> {
         let Some(path) = &self.output else {
             return Ok(self.format.unwrap_or(Form::Mermaid));
@@ -76,7 +77,8 @@ impl GraphOptions {
 
 /// Draws the running rig.
 ///
-/// # Errors A [`UserError`] if no rig runs, for a time out of range, or a file that cannot be written.
+/// # Errors
+/// A [`UserError`] if no rig runs, for a time out of range, or a file that cannot be written.
 pub(super) fn run(options: &GraphOptions) -> Result<i32, UserError> {
     let time = duration(options.seconds)?;
     let form = options.form()?;

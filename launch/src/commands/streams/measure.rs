@@ -45,7 +45,8 @@ pub(super) enum Measure {
 
 /// Measures and prints.
 ///
-/// # Errors A [`UserError`] if no rig runs, or for a time out of range.
+/// # Errors
+/// A [`UserError`] if no rig runs, or for a time out of range.
 pub(super) fn run(options: &MeasureOptions, measure: Measure) -> Result<i32, UserError> {
     let time = duration(options.seconds)?;
     let mut listener = Listener::open(options.target.rig(), &options.topic)?;

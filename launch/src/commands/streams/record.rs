@@ -51,7 +51,8 @@ pub struct RecordOptions {
 
 /// Records until Ctrl-C, the end of the time, or that of the rig.
 ///
-/// # Errors A [`UserError`] where no rig runs, or the file cannot be written: its earlier part is readable.
+/// # Errors
+/// A [`UserError`] where no rig runs, or the file cannot be written: its earlier part is readable.
 pub(super) fn run(options: &RecordOptions) -> Result<i32, UserError> {
     print_beside();
     let bounded = |name: &str, seconds: Option<f64>| match seconds {

@@ -85,7 +85,8 @@ enum Form {
 
 /// Runs the subcommand.
 ///
-/// # Errors A [`UserError`] for a file that cannot be read or written, or an absent topic.
+/// # Errors
+/// A [`UserError`] for a file that cannot be read or written, or an absent topic.
 pub fn run(command: &RecordingCommand) -> Result<i32, UserError> {
     match command {
         RecordingCommand::Record(options) => record::run(options),

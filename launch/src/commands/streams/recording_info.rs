@@ -18,7 +18,8 @@ const WHOLE: [u64; 2] = [0, u64::MAX];
 
 /// Shows the contents of a recording.
 ///
-/// # Errors A [`UserError`] for a file that cannot be read.
+/// # Errors
+/// A [`UserError`] for a file that cannot be read.
 pub(super) fn info(path: &Path, as_json: bool) -> Result<i32, UserError> {
     let mut recording = Recording::open(path)?;
     let facts = recording.notes().get("recording").cloned();

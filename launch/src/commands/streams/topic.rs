@@ -27,7 +27,8 @@ pub enum TopicCommand {
 
 /// Runs the command.
 ///
-/// # Errors A [`UserError`] if no rig runs, or for an option out of range.
+/// # Errors
+/// A [`UserError`] if no rig runs, or for an option out of range.
 pub fn run(command: &TopicCommand) -> Result<i32, UserError> {
     match command {
         TopicCommand::List(options) => measure::run(options, Measure::Topics),

@@ -52,7 +52,8 @@ fn is_rare(topic: &str) -> bool {
 
 /// Makes a take of a session.
 ///
-/// # Errors A [`UserError`] where the recording is incomplete, or the take cannot be written.
+/// # Errors
+/// A [`UserError`] where the recording is incomplete, or the take cannot be written.
 pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
     let path = &options.recording;
     let mut session = Source::open(path)?;

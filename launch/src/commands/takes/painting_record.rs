@@ -89,7 +89,8 @@ impl PaintingRecord {
 
     /// Writes the painting at the beginning, once, to a new file.
     ///
-    /// # Errors A [`UserError`] where it cannot be read or written.
+    /// # Errors
+    /// A [`UserError`] where it cannot be read or written.
     pub(super) fn write_painting(&self, to: &Path) -> Result<(), UserError> {
         let failed = |error| wrong(&self.path, &error);
         if record::rewind(&self.begin).map_err(failed)? {
@@ -101,7 +102,8 @@ impl PaintingRecord {
 
     /// Passes the records accepted after `sequencer` to `each`, up to a working time, with the time, ns.
     ///
-    /// # Errors A [`UserError`] where the record is not intact; that of `each`.
+    /// # Errors
+    /// A [`UserError`] where the record is not intact; that of `each`.
     pub(super) fn follow(
         &self,
         sequencer: &mut Sequencer,

@@ -18,7 +18,8 @@ use maulstick_painting_setup::{KitOptions, refused};
 
 /// Paints a session.
 ///
-/// # Errors A [`UserError`] for an incomplete session, for options that do not apply, or where a file cannot be
+/// # Errors
+/// A [`UserError`] for an incomplete session, for options that do not apply, or where a file cannot be
 /// written.
 pub(super) fn render_session(
     options: &RenderOptions,

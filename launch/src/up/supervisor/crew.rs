@@ -154,7 +154,8 @@ impl Crew {
 
     /// The system refused to start a node: where a retry may help it follows later, and the others continue.
     ///
-    /// # Errors The fault, where the node is indispensable and a retry does not help.
+    /// # Errors
+    /// The fault, where the node is indispensable and a retry does not help.
     pub(super) fn put_off(
         &mut self,
         name: &str,

@@ -96,7 +96,8 @@ impl Orders {
 
     /// Checks that a painting in these settings may be left; `hands` tells whether a take is played.
     ///
-    /// # Errors A [`UserError`] with advice where something would be lost.
+    /// # Errors
+    /// A [`UserError`] with advice where something would be lost.
     pub(super) fn may_leave(
         &self,
         config: &RigConfig,

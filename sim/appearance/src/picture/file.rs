@@ -53,7 +53,8 @@ impl<'a> Pixels<'a> {
 
 /// Writes a PNG: `fill` writes all its pixels, from the top row. The bytes are independent of the size of its writes.
 ///
-/// # Errors The error of `to` or `fill`.
+/// # Errors
+/// The error of `to` or `fill`.
 pub fn write_png<E: From<Error>>(
     to: impl Write,
     info: png::Info<'_>,

@@ -135,7 +135,8 @@ impl BrushFile {
     /// Checks all numbers and the length of the file as written anew, in which numbers may take more room than in the
     /// text that was read.
     ///
-    /// # Errors [`BrushError::Range`], [`BrushError::TooLong`].
+    /// # Errors
+    /// [`BrushError::Range`], [`BrushError::TooLong`].
     pub fn check(&self) -> Result<(), BrushError> {
         check::check(self)?;
         match self.to_toml()?.len() {
@@ -146,7 +147,8 @@ impl BrushFile {
 
     /// The brush file as TOML; [`parse`](Self::parse) reads it back to the same brush.
     ///
-    /// # Errors [`BrushError::File`] where a value cannot be written as TOML.
+    /// # Errors
+    /// [`BrushError::File`] where a value cannot be written as TOML.
     pub fn to_toml(&self) -> Result<String, BrushError> {
         toml::to_string(self).map_err(|error| BrushError::File(error.to_string()))
     }

@@ -268,7 +268,8 @@ fn spines(
 /// Motion from the mesh's bind pose to its rest pose, world frame, the same for all joints; without inverse bind
 /// matrices, the transform of the mesh's own node.
 ///
-/// # Errors [`GltfError::Posed`], or that the matrices cannot be read.
+/// # Errors
+/// [`GltfError::Posed`], or that the matrices cannot be read.
 pub(super) fn bind(
     document: &Document,
     tree: &Tree,

@@ -59,7 +59,8 @@ impl Document {
 
     /// The numbers of an accessor in order; unsigned ones are normalised to 0..1.
     ///
-    /// # Errors [`GltfError::Data`] or [`GltfError::NotFinite`].
+    /// # Errors
+    /// [`GltfError::Data`] or [`GltfError::NotFinite`].
     pub(super) fn numbers(
         &self,
         accessor: &Accessor<'_>,
@@ -84,7 +85,8 @@ impl Document {
 
     /// The integers of an accessor in order.
     ///
-    /// # Errors [`GltfError::Data`].
+    /// # Errors
+    /// [`GltfError::Data`].
     pub(super) fn indices(
         &self,
         accessor: &Accessor<'_>,

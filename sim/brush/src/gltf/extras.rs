@@ -76,7 +76,8 @@ pub(super) struct Properties(Map<String, Value>);
 impl Properties {
     /// Properties of a node; unknown ones are ignored.
     ///
-    /// # Errors [`GltfError::Property`] or [`GltfError::Misspelt`].
+    /// # Errors
+    /// [`GltfError::Property`] or [`GltfError::Misspelt`].
     pub(super) fn of(
         node: &str,
         owner: Owner,

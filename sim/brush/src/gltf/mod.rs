@@ -49,7 +49,8 @@ const MOST_VERTICES: usize = 4096;
 
 /// Reads a brush from a .glb, or from a .gltf with its data embedded.
 ///
-/// # Errors [`GltfError`], which names the node, the fault and its remedy.
+/// # Errors
+/// [`GltfError`], which names the node, the fault and its remedy.
 pub fn read(bytes: &[u8]) -> Result<BrushFile, GltfError> {
     let document = Document::parse(bytes)?;
     let tree = Tree::of(&document)?;

@@ -17,7 +17,8 @@ pub const TILT_MOST: f64 = 1.05;
 
 /// The edit that sets a surface's pose and zoom.
 ///
-/// # Errors [`ValueError`] where they are not finite or out of range.
+/// # Errors
+/// [`ValueError`] where they are not finite or out of range.
 pub fn place(surface: u32, pose: &Pose, zoom: f64) -> Result<Edit, ValueError> {
     check_reach(pose)?;
     let zoom = Zoom::new(zoom)?;
@@ -59,7 +60,8 @@ impl SurfacePlacement {
 
     /// The edit that gives a surface this placement.
     ///
-    /// # Errors [`ValueError`] where it is not finite or out of range.
+    /// # Errors
+    /// [`ValueError`] where it is not finite or out of range.
     pub fn edit(&self, surface: u32) -> Result<Edit, ValueError> {
         place(surface, &self.pose.to_pose(), self.zoom)
     }

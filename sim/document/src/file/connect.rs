@@ -11,7 +11,8 @@ use crate::error::DocumentError;
 /// call no function with side effects, and no statement changes its schema behind SQLite's back. Each connection to a
 /// painting is made here. Source: "Defense Against The Dark Arts", <https://sqlite.org/security.html>.
 ///
-/// # Errors The error of SQLite.
+/// # Errors
+/// The error of SQLite.
 pub(crate) fn connect(
     path: &Path,
     flags: OpenFlags,

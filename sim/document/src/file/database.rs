@@ -47,7 +47,8 @@ pub struct Database {
 
 /// Checks that the journal of a closed painting is merged into its file, as is required before the file is renamed.
 ///
-/// # Errors [`DocumentError::Unmerged`] if there was no room to merge it.
+/// # Errors
+/// [`DocumentError::Unmerged`] if there was no room to merge it.
 pub(crate) fn merged(path: &Path) -> Result<(), DocumentError> {
     match length(&companion(&resolved(path), "-wal")) {
         Some(1..) => Err(DocumentError::Unmerged(path.to_owned())),
@@ -128,7 +129,8 @@ impl Database {
 
     /// Opens a painting; `vfs` is the name of the SQLite VFS, if not the default. The flag is true if it was created.
     ///
-    /// # Errors Any [`DocumentError`].
+    /// # Errors
+    /// Any [`DocumentError`].
     pub fn open(
         path: &Path,
         access: Access,
@@ -250,7 +252,8 @@ impl Database {
 
     /// Closes the file. An earlier journal stays unchanged; a new one is merged.
     ///
-    /// # Errors The error of SQLite.
+    /// # Errors
+    /// The error of SQLite.
     pub fn close_unchanged(self) -> Result<(), DocumentError> {
         if self.was_unclosed {
             self.connection.close().map_err(|(_, error)| error.into())
@@ -293,7 +296,8 @@ impl Database {
 
     /// Merges the journal into the file, and stays open.
     ///
-    /// # Errors The reason why it cannot be merged, from SQLite.
+    /// # Errors
+    /// The reason why it cannot be merged, from SQLite.
     pub(crate) fn try_merge_journal(&self) -> Result<(), DocumentError> {
         let query = "PRAGMA wal_checkpoint(TRUNCATE)";
         Ok(self.connection.query_row(query, params![], |_| Ok(()))?)
@@ -373,7 +377,8 @@ impl Database {
 
     /// Checks that it has the tables of this version: an unlocked file is not migrated.
     ///
-    /// # Errors [`DocumentError::NoPainting`] if not, [`DocumentError::Altered`], or the error of SQLite.
+    /// # Errors
+    /// [`DocumentError::NoPainting`] if not, [`DocumentError::Altered`], or the error of SQLite.
     pub(crate) fn is_of_this_version(&self) -> Result<(), DocumentError> {
         schema::check(&self.connection)?;
         if schema::has_record(&self.connection)? {

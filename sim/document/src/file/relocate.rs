@@ -128,7 +128,8 @@ pub(crate) fn rescue(database: &Database, to: &Path, replace: bool) -> Result<()
 /// Copies the file of a painting whose journal is unreadable, in the state of the last merge; false, without a file at
 /// `to`, if that is not a whole painting.
 ///
-/// # Errors As [`make_room`], or the error of the file system.
+/// # Errors
+/// As [`make_room`], or the error of the file system.
 pub(crate) fn copied_without_journal(
     from: &Path,
     to: &Path,

@@ -134,7 +134,8 @@ impl Opened {
 
     /// The painting at the beginning of its record, for replaying it; `None` without a record.
     ///
-    /// # Errors [`EditError`] if the stored parts do not fit together.
+    /// # Errors
+    /// [`EditError`] if the stored parts do not fit together.
     pub fn first(self) -> Result<Option<Sequencer>, EditError> {
         let Restored {
             beginning,
@@ -160,7 +161,8 @@ impl Opened {
     /// [`sequencer`](Self::sequencer) for a rig: in a file that a player has prepared for its session, brushes keep
     /// their positions, and all wait for the player.
     ///
-    /// # Errors As [`sequencer`](Self::sequencer).
+    /// # Errors
+    /// As [`sequencer`](Self::sequencer).
     pub fn in_rig(self) -> Result<Sequencer, EditError> {
         if !self.sequencer.held {
             return self.sequencer();
@@ -173,7 +175,8 @@ impl Opened {
 
     /// [`sequencer`](Self::sequencer) for records that follow without a break: brushes keep their positions.
     ///
-    /// # Errors As [`sequencer`](Self::sequencer).
+    /// # Errors
+    /// As [`sequencer`](Self::sequencer).
     pub fn in_its_midst(self) -> Result<Sequencer, EditError> {
         let painting = Painting::restore(self.restored, self.library, self.pager)?;
         let mut sequencer = Sequencer::restored(painting, self.sequencer);
@@ -192,7 +195,8 @@ fn damaged(what: impl ToString) -> DocumentError {
 
 /// True if there is a painting to continue; false if one is to be created.
 ///
-/// # Errors Any [`DocumentError`]; nothing is changed.
+/// # Errors
+/// Any [`DocumentError`]; nothing is changed.
 pub fn glance(path: &Path) -> Result<bool, DocumentError> {
     Ok(scene(path)?.is_some())
 }

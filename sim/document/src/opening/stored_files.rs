@@ -23,7 +23,8 @@ pub(crate) fn file(database: &Database, hash: &str) -> Result<Vec<u8>, DocumentE
 
 /// Text file by its hash.
 ///
-/// # Errors [`DocumentError::Damaged`] if it is missing, or does not match its hash.
+/// # Errors
+/// [`DocumentError::Damaged`] if it is missing, or does not match its hash.
 pub fn text(database: &Database, hash: &str) -> Result<String, DocumentError> {
     String::from_utf8(file(database, hash)?).map_err(damaged)
 }

@@ -136,7 +136,8 @@ impl StoredPages {
 
     /// Changes of a step. Neighbouring steps share tiles, which are in `known`.
     ///
-    /// # Errors [`DocumentError::Damaged`] if a page is missing.
+    /// # Errors
+    /// [`DocumentError::Damaged`] if a page is missing.
     pub(crate) fn changes(
         &self,
         packed: &[u8],

@@ -130,7 +130,8 @@ pub(super) fn write(
 
 /// Reads the beginning of a painting's record; `None` without one, or if its messages have another format.
 ///
-/// # Errors [`DocumentError::Damaged`] if it is not intact.
+/// # Errors
+/// [`DocumentError::Damaged`] if it is not intact.
 pub(crate) fn read(
     database: &Database,
     pages: &StoredPages,

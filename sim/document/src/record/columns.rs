@@ -57,7 +57,8 @@ struct Before {
 
 /// Consecutive messages, each preceded by its index and length, as columns.
 ///
-/// # Errors [`DocumentError::Damaged`] if the last one is torn.
+/// # Errors
+/// [`DocumentError::Damaged`] if the last one is torn.
 pub(super) fn columns(messages: &[u8]) -> Result<Vec<u8>, DocumentError> {
     let (mut columns, mut before) = (Columns::default(), Before::default());
     let mut rest = messages;

@@ -53,7 +53,8 @@ pub struct RecordStats {
 /// Advances the record to a checkpoint: `records` are the messages before it that are not in the journal. Messages
 /// included in the checkpoint leave the journal.
 ///
-/// # Errors The error of SQLite or the compressor.
+/// # Errors
+/// The error of SQLite or the compressor.
 pub(crate) fn advance(
     writer: &mut Writer<'_, '_>,
     checkpoint: &Checkpoint,
@@ -88,7 +89,8 @@ pub(crate) fn bytes_after(database: &Database, change: &RecordChange) -> u64 {
 /// Discards the record of a closed painting, and its displayed tiles: the next program that opens it begins another
 /// record, and draws the tiles again.
 ///
-/// # Errors Any [`DocumentError`].
+/// # Errors
+/// Any [`DocumentError`].
 pub fn discard(path: &Path) -> Result<(), DocumentError> {
     let (database, _) = Database::open(path, Access::Paint, None)?;
     clear(&database)?;
@@ -250,7 +252,8 @@ fn damaged(what: &str) -> DocumentError {
 
 /// Messages from one serial number on, up to the end of a row; `None` if there are none.
 ///
-/// # Errors [`DocumentError::Damaged`] if they are not intact, or earlier ones are missing.
+/// # Errors
+/// [`DocumentError::Damaged`] if they are not intact, or earlier ones are missing.
 pub(crate) fn row_from(
     database: &Database,
     serial: u64,

@@ -11,7 +11,8 @@ use crate::file::database::{Access, Database};
 /// this program can replay. Later paint, history and the record are deleted; an error may leave the file without its
 /// tiles, so use a copy.
 ///
-/// # Errors Any [`DocumentError`].
+/// # Errors
+/// Any [`DocumentError`].
 pub fn rewind(path: &Path) -> Result<bool, DocumentError> {
     let settings = DocumentSettings::new(path, Access::Paint);
     let open = || -> Result<_, DocumentError> {

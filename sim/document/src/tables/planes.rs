@@ -77,7 +77,8 @@ fn unpacked_bytes(mask: u64, bytes: &[u8]) -> Result<usize, Defect> {
 
 /// Planes as bytes, as a difference from `base` if there is one.
 ///
-/// # Errors The error of the compressor.
+/// # Errors
+/// The error of the compressor.
 pub fn encode(planes: &Planes, base: Option<&Planes>, level: i32) -> std::io::Result<Vec<u8>> {
     let mut shuffled = vec![0u8; 1 + planes.len() * TILE_CELLS * 4];
     shuffled[0] = u8::from(!planes.own().is_empty());
@@ -102,7 +103,8 @@ pub fn encode(planes: &Planes, base: Option<&Planes>, level: i32) -> std::io::Re
 
 /// Recompresses planes of the slots of `mask` at another zstd level.
 ///
-/// # Errors [`Defect`].
+/// # Errors
+/// [`Defect`].
 pub fn repack(mask: u64, bytes: &[u8], level: i32) -> Result<Vec<u8>, Defect> {
     let most = unpacked_bytes(mask, bytes)?;
     let shuffled = zstd::bulk::decompress(bytes, most)?;

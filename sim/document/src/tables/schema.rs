@@ -151,7 +151,8 @@ pub fn is_blank(connection: &Connection) -> Result<bool, DocumentError> {
 
 /// True if a file is another program's database. It is only read.
 ///
-/// # Errors The error of SQLite.
+/// # Errors
+/// The error of SQLite.
 pub fn is_foreign(path: &Path) -> Result<bool, DocumentError> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let connection = connect(path, flags, None)?;
@@ -166,7 +167,8 @@ const MIGRATIONS: [&str; (VERSION - OLDEST_VERSION) as usize] = [RECORD_TABLES, 
 
 /// Schema of a painting; rejects one of a newer program or before the oldest schema.
 ///
-/// # Errors [`DocumentError::Newer`], [`DocumentError::Older`], [`DocumentError::NoPainting`], or the error of SQLite.
+/// # Errors
+/// [`DocumentError::Newer`], [`DocumentError::Older`], [`DocumentError::NoPainting`], or the error of SQLite.
 pub fn version(connection: &Connection) -> Result<i32, DocumentError> {
     let application: i32 =
         connection.query_row("PRAGMA application_id", params![], |row| row.get(0))?;
@@ -203,7 +205,8 @@ fn objects(connection: &Connection, most: usize) -> Result<BTreeSet<Object>, Doc
 /// Checks that a painting has exactly the tables and the index of this program: a trigger would change the written
 /// data, a view the data read.
 ///
-/// # Errors [`DocumentError::Altered`] with the difference, or as [`version`].
+/// # Errors
+/// [`DocumentError::Altered`] with the difference, or as [`version`].
 pub fn check(connection: &Connection) -> Result<(), DocumentError> {
     let own = Connection::open_in_memory()?;
     own.execute_batch(TABLES)?;

@@ -100,7 +100,8 @@ fn judged(shared: &Shared, database: &Database, error: DocumentError) -> Documen
 
 /// Reads the pages that readers wait for. A page that the disk cannot read is kept for a retry.
 ///
-/// # Errors The fault of the disk.
+/// # Errors
+/// The fault of the disk.
 fn serve_fetches(shared: &Shared, database: &Database) -> Result<(), DocumentError> {
     let now = Instant::now();
     let fetches = {

@@ -36,7 +36,8 @@ impl Easel {
 
     /// Continues a painting.
     ///
-    /// # Errors The fault of the file.
+    /// # Errors
+    /// The fault of the file.
     pub fn open(settings: &DocumentSettings) -> Result<Self, String> {
         let (document, opened) = Document::open(settings).map_err(|error| error.to_string())?;
         let opened = opened.ok_or("there is no painting in it")?;

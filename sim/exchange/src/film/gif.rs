@@ -27,7 +27,8 @@ fn failed(error: gif::EncodingError) -> Error {
 impl<W: Write> GifFilm<W> {
     /// A film of frames of `size` pixels, across and down, which repeats.
     ///
-    /// # Errors The error of `to`, or for more than 65,535 pixels either way.
+    /// # Errors
+    /// The error of `to`, or for more than 65,535 pixels either way.
     pub fn new(to: W, size: [usize; 2]) -> Result<Self, Error> {
         let [width, height] = [u16::try_from(size[0]), u16::try_from(size[1])];
         let (width, height) = (width.map_err(Error::other)?, height.map_err(Error::other)?);
@@ -43,7 +44,8 @@ impl<W: Write> GifFilm<W> {
 
     /// Adds a frame, sRGB, with its duration, 1/100 s.
     ///
-    /// # Errors The error of the file.
+    /// # Errors
+    /// The error of the file.
     pub fn add(&mut self, rgb: &[u8], time: u16) -> Result<(), Error> {
         let (pixels, _) = rgb.as_chunks::<3>();
         if self.shown == pixels

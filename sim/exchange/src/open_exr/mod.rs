@@ -50,7 +50,8 @@ const COMMENTS: &str = "R, G, B: linear colour before light, without the surface
 
 /// Writes a surface as an OpenEXR file, from the start of `to`; the final position is not its end.
 ///
-/// # Errors [`ExchangeError`].
+/// # Errors
+/// [`ExchangeError`].
 pub fn write_open_exr(
     painting: &mut Painting,
     surface: u32,

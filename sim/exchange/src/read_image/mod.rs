@@ -67,14 +67,16 @@ impl Samples {
 impl Image {
     /// Reads a file; its kind is determined by its first bytes, not by its name.
     ///
-    /// # Errors [`ImportError`] where it is no picture, or one larger than [`MOST_SIDE`].
+    /// # Errors
+    /// [`ImportError`] where it is no picture, or one larger than [`MOST_SIDE`].
     pub fn open(path: &Path) -> Result<Self, ImportError> {
         Self::decode(BufReader::new(File::open(path).map_err(ImportError::File)?))
     }
 
     /// [`open`](Self::open) with a limit on the decoder's memory, bytes.
     ///
-    /// # Errors As [`open`](Self::open), and where it would exceed the limit.
+    /// # Errors
+    /// As [`open`](Self::open), and where it would exceed the limit.
     pub fn open_within(path: &Path, bytes: u64) -> Result<Self, ImportError> {
         let file = BufReader::new(File::open(path).map_err(ImportError::File)?);
         Self::decode_within(file, bytes)

@@ -78,7 +78,8 @@ fn of<P: Pixel>(
 
 /// Checks the size of a picture before memory is allocated for it.
 ///
-/// # Errors [`ImportError`] where it is too large, or has no pixels.
+/// # Errors
+/// [`ImportError`] where it is too large, or has no pixels.
 pub(super) fn check_size(
     [width, height]: [u32; 2],
     bytes_per_pixel: usize,

@@ -177,7 +177,8 @@ fn counted(shares: &Shares, paints: usize, whole: u32) -> Vec<u32> {
 
 /// The picture as films of `thickness_m` on a surface; `progress` gets the searches done, and their number.
 ///
-/// # Errors [`ImportError`] for a film too thin or too thick, or a surface too large.
+/// # Errors
+/// [`ImportError`] for a film too thin or too thick, or a surface too large.
 pub fn underpaint(
     support: &Support,
     image: &Image,

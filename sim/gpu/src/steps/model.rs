@@ -56,7 +56,8 @@ pub struct GpuModel {
 impl GpuModel {
     /// A model of these stages on a device.
     ///
-    /// # Errors A [`GpuError`] where the driver rejects the shaders.
+    /// # Errors
+    /// A [`GpuError`] where the driver rejects the shaders.
     pub fn new(
         gpu: Device,
         kernels: &'static [Kernel],
@@ -89,7 +90,8 @@ impl GpuModel {
 
     /// Submits all steps so far and waits for them; they remain unsettled.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn wait(&mut self, window: &Window, load: &BrushLoad) -> Result<(), GpuError> {
         let (Some(workspace), Some(session)) = (&mut self.workspace, &mut self.session) else {
             return Ok(());

@@ -27,7 +27,8 @@ pub struct Probed {
 impl<P: Planner> Probing<P> {
     /// The stages of a planner on a device.
     ///
-    /// # Errors A [`GpuError`] where the driver rejects the shaders.
+    /// # Errors
+    /// A [`GpuError`] where the driver rejects the shaders.
     pub fn new(gpu: Device, kernels: &'static [Kernel], planner: P) -> Result<Self, GpuError> {
         Ok(Self {
             workspace: Workspace::new(gpu, kernels)?,

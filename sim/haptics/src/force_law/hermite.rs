@@ -103,7 +103,8 @@ impl Segment {
 impl Curve {
     /// Validates tuples.
     ///
-    /// # Errors The fault: fewer than two or more than five, not from depth 0 and force 0, not in order of depth, a
+    /// # Errors
+    /// The fault: fewer than two or more than five, not from depth 0 and force 0, not in order of depth, a
     /// force that falls, a negative slope, a number that is not finite.
     pub fn new(tuples: &[HermiteKnot]) -> Result<Self, &'static str> {
         if !(2..=KNOTS).contains(&tuples.len()) {

@@ -19,7 +19,8 @@ pub struct Local {
 impl Local {
     /// The force `force_n` at `pose` and its derivative by position, row by row, N/m.
     ///
-    /// # Errors The value that is not finite.
+    /// # Errors
+    /// The value that is not finite.
     pub fn new(
         pose: &Pose,
         force_n: [f64; 3],

@@ -36,7 +36,8 @@ fn check_paint(heading: &str) -> Result<(), (String, &'static str)> {
 impl Headings {
     /// Reads the headings of `table`.
     ///
-    /// # Errors A column without a heading or with a repeated one, wavelengths that are not ascending, more than
+    /// # Errors
+    /// A column without a heading or with a repeated one, wavelengths that are not ascending, more than
     /// [`MOST_COLUMNS`], a paint whose name does not fit a paint file, or missing paints or wavelengths.
     pub fn of(table: &Table) -> Result<Self, MeasureError> {
         let columns = table.headings().len();

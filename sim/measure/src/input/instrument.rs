@@ -18,7 +18,8 @@ use crate::table::Table;
 /// Converts readings of samples and grounds to reflectances, where the table has raw spectra.
 /// `standard` is the reflectance of the standard itself.
 ///
-/// # Errors One of the pair of filter readings is missing, a divisor is 0, or the filter's transmittance exceeds 1.
+/// # Errors
+/// One of the pair of filter readings is missing, a divisor is 0, or the filter's transmittance exceeds 1.
 pub(crate) fn to_reflectances(
     readings: &mut [Reading],
     table: &Table,

@@ -88,7 +88,8 @@ const KINDS: [(&str, Kind); 6] = [
 impl Measurements {
     /// Reads a table of measurements, described in `docs/measuring.md`.
     ///
-    /// # Errors A [`MeasureError`] with line and column.
+    /// # Errors
+    /// A [`MeasureError`] with line and column.
     pub fn parse(text: &str) -> Result<Self, MeasureError> {
         let table = Table::parse(text)?;
         let headings = Headings::of(&table)?;

@@ -150,7 +150,8 @@ pub fn parse_surface(text: &str) -> Result<SurfaceCorrection, SurfaceError> {
 
 /// The index of a paint, whatever its case.
 ///
-/// # Errors The nearest name.
+/// # Errors
+/// The nearest name.
 pub fn paint_called(name: &str, paints: &[&str]) -> Result<usize, MeasureError> {
     let same = |paint: &&str| paint.eq_ignore_ascii_case(name);
     paints.iter().position(same).ok_or_else(|| {

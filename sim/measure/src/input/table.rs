@@ -13,7 +13,8 @@ pub struct Table(maulstick_tables::Table);
 impl Table {
     /// Reads a table.
     ///
-    /// # Errors As [`maulstick_tables::Table::parse`], and for a table without headings or rows.
+    /// # Errors
+    /// As [`maulstick_tables::Table::parse`], and for a table without headings or rows.
     pub fn parse(text: &str) -> Result<Self, MeasureError> {
         let table = maulstick_tables::Table::parse(text, HeadingLine::First)?;
         if table.headings().is_empty() {

@@ -10,7 +10,8 @@ use crate::measurements::{Layer, Measurements};
 /// Checks that each paint has a sample and that all groups are tied to the white. A single paint, for example with only
 /// its masstone measured, passes while others are tied: its S is then a guess, of which the fit warns.
 ///
-/// # Errors A paint without a sample, or a group of paints that is not tied, with its line.
+/// # Errors
+/// A paint without a sample, or a group of paints that is not tied, with its line.
 pub fn check_links(measured: &Measurements, white: usize) -> Result<(), MeasureError> {
     let paints = measured.paints.len();
     for (place, name) in measured.paints.iter().enumerate() {

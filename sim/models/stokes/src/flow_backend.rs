@@ -37,7 +37,8 @@ pub trait FlowBackend: fmt::Debug + Send {
 
     /// Velocity on the lower faces of each axis after one step from rest, m/s, in the grid's layout.
     ///
-    /// # Errors A [`FlowError`], without a result.
+    /// # Errors
+    /// A [`FlowError`], without a result.
     fn flow(&mut self, window: &FlowWindow<'_>) -> Result<&[Vec<f32>; 3], FlowError>;
 }
 
@@ -129,7 +130,8 @@ impl BrushFlow {
 
 /// Velocities on the faces of voxels by a device, and its reason for refusing the original window.
 ///
-/// # Errors The device is lost, or the coarsest window does not fit either.
+/// # Errors
+/// The device is lost, or the coarsest window does not fit either.
 fn solve(
     device: &mut dyn FlowBackend,
     fine: &Grid,

@@ -338,7 +338,8 @@ impl PaintLibrary {
 
     /// Checks that a mixture's shares are valid and its paints exist, and spells their names like the file.
     ///
-    /// # Errors [`PaintError::Mixture`] or [`PaintError::Unknown`].
+    /// # Errors
+    /// [`PaintError::Mixture`] or [`PaintError::Unknown`].
     pub fn check(&self, mixture: &Mixture) -> Result<Mixture, PaintError> {
         mixture.check()?;
         let mut mixture = mixture.clone();

@@ -50,7 +50,8 @@ impl Reflectance {
     /// Reads a column of reflectances of 0 to 1 over ascending wavelengths in nm; see [`resample`]. As in tables of
     /// measurements, `# specular: excluded` means without the gloss; otherwise it is included.
     ///
-    /// # Errors [`TableError`] with line and column.
+    /// # Errors
+    /// [`TableError`] with line and column.
     pub fn parse(text: &str) -> Result<Self, TableError> {
         let table = parsed(text)?;
         let mut specular_excluded = false;

@@ -54,7 +54,8 @@ macro_rules! for_each_edit {
 impl Painting {
     /// Applies an edit.
     ///
-    /// # Errors [`EditError`] with the reason of a refusal; the painting is then unchanged.
+    /// # Errors
+    /// [`EditError`] with the reason of a refusal; the painting is then unchanged.
     pub fn apply(&mut self, edit: impl Into<Edit>) -> Result<Applied, EditError> {
         read(&edit.into())?.apply(self)
     }
@@ -64,7 +65,8 @@ impl Painting {
 pub trait PaintingEdit: Debug {
     /// Changes a painting, which is unchanged on a refusal.
     ///
-    /// # Errors [`EditError`] with the reason of a refusal.
+    /// # Errors
+    /// [`EditError`] with the reason of a refusal.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError>;
 
     /// The edit in the words of a log.

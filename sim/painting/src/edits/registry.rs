@@ -73,7 +73,8 @@ pub fn entries() -> &'static [EditEntry] {
 
 /// An edit in executable form.
 ///
-/// # Errors [`EditFault`] for an unknown one, and for a field that is out of range.
+/// # Errors
+/// [`EditFault`] for an unknown one, and for a field that is out of range.
 pub fn read(edit: &Edit) -> Result<Box<dyn PaintingEdit>, EditFault> {
     (EditEntry::find(edit)?.read)(edit)
 }

@@ -105,7 +105,8 @@ impl Painting {
 
     /// Adds a picture for a ground or a tooth, and returns its hash.
     ///
-    /// # Errors As [`Assets::add`].
+    /// # Errors
+    /// As [`Assets::add`].
     pub fn embed(&mut self, bytes: Arc<[u8]>) -> Result<String, EditError> {
         Ok(self.bench.desk.optics.assets.add(bytes)?)
     }

@@ -24,7 +24,8 @@ impl Painting {
 
     /// Shows the painting of a version in a [`still`](Self::still).
     ///
-    /// # Errors [`EditError`] for an unknown version.
+    /// # Errors
+    /// [`EditError`] for an unknown version.
     pub fn show_version(&mut self, name: &str) -> Result<(), EditError> {
         let Workbench { desk, past, .. } = &mut self.bench;
         let version = past.versions.find(name)?;

@@ -102,7 +102,8 @@ impl Sequencer {
 
     /// Applies an edit of the sequencer's owner, at once.
     ///
-    /// # Errors [`EditError`] where the painting refuses it.
+    /// # Errors
+    /// [`EditError`] where the painting refuses it.
     pub fn edit(&mut self, edit: impl Into<Edit>) -> Result<Applied, EditError> {
         let edit = edit.into();
         let applied = self.painting.apply(edit.clone())?;
@@ -112,7 +113,8 @@ impl Sequencer {
 
     /// Begins a take of the sequencer's owner: its samples have this device and epoch.
     ///
-    /// # Errors [`EditError`] where a load is wrong.
+    /// # Errors
+    /// [`EditError`] where a load is wrong.
     pub fn begin_own_take(
         &mut self,
         brush: &str,

@@ -22,7 +22,8 @@ impl Sequencer {
 
     /// Accepts a record of a session as if it had come now: it takes the next place in the journal.
     ///
-    /// # Errors [`EditError`] where the painting refuses it.
+    /// # Errors
+    /// [`EditError`] where the painting refuses it.
     pub fn repeat(&mut self, record: Record) -> Result<(), EditError> {
         match record.what {
             Accepted::State { header, state } => {

@@ -15,7 +15,8 @@ const MOST_US: u64 = 100_000;
 
 /// Runs it for `ticks` ticks, a millisecond apart, with memory locked and SCHED_FIFO, priority 80.
 ///
-/// # Errors A [`UserError`] where it is not installed or fails.
+/// # Errors
+/// A [`UserError`] where it is not installed or fails.
 pub(super) fn run(place: &Path, ticks: u64) -> Result<Histogram, UserError> {
     let json = place.join("cyclictest.json");
     let mut command = Command::new("cyclictest");

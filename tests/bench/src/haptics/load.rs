@@ -92,7 +92,8 @@ impl Load {
 
     /// Checks that it is still running.
     ///
-    /// # Errors A [`UserError`] where it has ended: later measurements lacked the load.
+    /// # Errors
+    /// A [`UserError`] where it has ended: later measurements lacked the load.
     pub(super) fn check(&mut self) -> Result<(), UserError> {
         match self.0.try_wait().map_err(fault)? {
             None => Ok(()),

@@ -52,7 +52,8 @@ pub(crate) fn mean_and_most(delta_e: &[f64]) -> [f64; 2] {
 
 /// The four rows with their captions.
 ///
-/// # Errors A [`UserError`] where the font cannot be read.
+/// # Errors
+/// A [`UserError`] where the font cannot be read.
 pub(crate) fn picture(
     gradings: &[Grading],
     ends: [&str; 2],

@@ -79,7 +79,8 @@ const EFFECTS: [Effect; 8] = [
 
 /// The sheet, on boards like this; `told` receives each panel's progress.
 ///
-/// # Errors A [`UserError`] where a brush or a paint is refused, or where it would have too many pixels.
+/// # Errors
+/// A [`UserError`] where a brush or a paint is refused, or where it would have too many pixels.
 pub(crate) fn effects(
     library: &PaintLibrary,
     board: Board,

@@ -243,7 +243,8 @@ fn library_brush(kind: &str) -> Result<BrushFile, UserError> {
 
 /// The whole sheet, on cells of this side; `told` receives each panel's progress.
 ///
-/// # Errors As [`brush_panel`], and where it would have too many pixels.
+/// # Errors
+/// As [`brush_panel`], and where it would have too many pixels.
 pub(crate) fn sheet(
     library: &PaintLibrary,
     cell_mm: f64,

@@ -40,7 +40,8 @@ impl PanelContext<'_> {
 
     /// Takes up a preset: the brush, its settings, and then its paint.
     ///
-    /// # Errors A [`UserError`] for an invalid part; nothing is changed then.
+    /// # Errors
+    /// A [`UserError`] for an invalid part; nothing is changed then.
     pub(crate) fn take_up_preset(&mut self, preset: &Preset) -> Result<(), UserError> {
         if !self.may_change_brush() {
             return Ok(());

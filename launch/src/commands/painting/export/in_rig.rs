@@ -14,7 +14,8 @@ use maulstick_painting_setup::outputs::{Relayed, UsedFile, check_outputs, named_
 
 /// Writes the current painting through the rig.
 ///
-/// # Errors A [`UserError`] where it cannot be written, where another export is running, or where no rig runs.
+/// # Errors
+/// A [`UserError`] where it cannot be written, where another export is running, or where no rig runs.
 pub(super) fn run(options: &ExportOptions) -> Result<i32, UserError> {
     let client = Client::open(&options.target)?;
     let Some(file) = &options.output else {

@@ -97,7 +97,8 @@ impl ExportOptions {
 
 /// Writes a painting for other programs.
 ///
-/// # Errors A [`UserError`] where the painting cannot be read or the file not be written, where another export of the
+/// # Errors
+/// A [`UserError`] where the painting cannot be read or the file not be written, where another export of the
 /// rig is running, or where no rig runs.
 pub(super) fn run(options: &ExportOptions) -> Result<i32, UserError> {
     match (&options.file, &options.output) {

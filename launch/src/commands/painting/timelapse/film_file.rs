@@ -69,7 +69,8 @@ pub(super) struct FilmFile {
 impl FilmFile {
     /// Checks, before the work that fills it, that a film of `painting` can be written.
     ///
-    /// # Errors A [`UserError`] where it cannot, or where ffmpeg is missing.
+    /// # Errors
+    /// A [`UserError`] where it cannot, or where ffmpeg is missing.
     pub(super) fn new(
         kind: FilmKind,
         path: &Path,
@@ -103,7 +104,8 @@ impl FilmFile {
 
     /// Writes a film of frames of this size from `fill`, completely or not at all.
     ///
-    /// # Errors The error of `fill`, or where the film cannot be written.
+    /// # Errors
+    /// The error of `fill`, or where the film cannot be written.
     pub(super) fn write(
         &self,
         size: [usize; 2],

@@ -35,7 +35,8 @@ use stages::{BLEND, DRAW, KERNELS, NEXT_DRAWING, REFILL, WEIGH};
 
 /// The paint model on a device; the load on the machine selects its stroking algorithm.
 ///
-/// # Errors A [`GpuError`] where the driver rejects the shaders.
+/// # Errors
+/// A [`GpuError`] where the driver rejects the shaders.
 pub fn model(gpu: Device) -> Result<GpuModel, GpuError> {
     let steps = Steps { stroker: None };
     GpuModel::new(gpu, &KERNELS, Box::new(steps), Box::<Dab>::default())
@@ -43,7 +44,8 @@ pub fn model(gpu: Device) -> Result<GpuModel, GpuError> {
 
 /// The paint model with a fixed stroking algorithm.
 ///
-/// # Errors As [`model`].
+/// # Errors
+/// As [`model`].
 pub fn stroking(gpu: Device, stroker: Stroker) -> Result<GpuModel, GpuError> {
     let steps = Steps {
         stroker: Some(stroker),

@@ -50,7 +50,8 @@ pub struct Prober {
 impl Prober {
     /// The stages on a device, with this stroking algorithm.
     ///
-    /// # Errors A [`GpuError`] where the driver rejects the shaders.
+    /// # Errors
+    /// A [`GpuError`] where the driver rejects the shaders.
     pub fn new(gpu: Device, stroker: Stroker) -> Result<Self, GpuError> {
         let steps = Steps {
             stroker: Some(stroker),
@@ -62,7 +63,8 @@ impl Prober {
     /// Runs the stages of a step up to the last one called `last`, writes their result to its window and load, and
     /// returns their other results. `None` where the head is beside the surface, or its window is too large.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn run(&mut self, step: &mut Step<'_>, last: &str) -> Result<Option<Probe>, GpuError> {
         let grid = drawings(step, self.stroker).0.pop();
         let grid = grid.and_then(|drawing| drawing.grid(step));

@@ -25,7 +25,8 @@ pub struct Measured {
 impl Measured {
     /// A square of `side` × `side` cells with `paints` paints, 40 µm of each, that moves by a third of a cell.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn new(gpu: Device, side: usize, paints: usize) -> Result<Self, GpuError> {
         let made = |kernels: &'static [Kernel], name: &str| -> Vec<Pipeline> {
             let named = kernels.iter().filter(|kernel| kernel.name == name);
@@ -83,7 +84,8 @@ impl Measured {
 
     /// Duration of `times` advections, two passes each, submitted together.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn advection(&mut self, times: usize) -> Result<Duration, GpuError> {
         let side = self.side as u32;
         let groups = [
@@ -102,7 +104,8 @@ impl Measured {
 
     /// Duration of copying all counts and their sums `times` times, in as many dispatches.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn copy(&mut self, times: usize) -> Result<Duration, GpuError> {
         let half = (self.side * self.side * (1 + self.paints) / 2) as u32;
         let groups = [[half.div_ceil(256), 1]; 2];

@@ -27,7 +27,8 @@ use stages::{KERNELS, PUSHES};
 
 /// The paint model on a device.
 ///
-/// # Errors A [`GpuError`] where the driver rejects the shaders.
+/// # Errors
+/// A [`GpuError`] where the driver rejects the shaders.
 pub fn model(gpu: Device) -> Result<GpuModel, GpuError> {
     GpuModel::new(gpu, &KERNELS, Box::new(Steps), Box::<Impasto>::default())
 }

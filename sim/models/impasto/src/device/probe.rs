@@ -31,7 +31,8 @@ pub struct Prober {
 impl Prober {
     /// The stages on a device.
     ///
-    /// # Errors A [`GpuError`] where the driver rejects the shaders.
+    /// # Errors
+    /// A [`GpuError`] where the driver rejects the shaders.
     pub fn new(gpu: Device) -> Result<Self, GpuError> {
         let stages = Probing::new(gpu, &KERNELS, Steps)?;
         Ok(Self { stages })
@@ -40,7 +41,8 @@ impl Prober {
     /// Runs the stages of a step up to the last one called `last`, writes their result to its window and load, and
     /// returns their other results. `None` where the head is beside the surface, or its window is too large.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn run(&mut self, step: &mut Step<'_>, last: &str) -> Result<Option<Probe>, GpuError> {
         let (Some(probed), Some(grid)) = (self.stages.run(step, last)?, pushed(step)) else {
             return Ok(None);

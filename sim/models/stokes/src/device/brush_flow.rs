@@ -26,14 +26,16 @@ pub struct GpuBrushFlow {
 impl GpuBrushFlow {
     /// A backend on a device: for large windows, or for all where the device must be used.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn new(gpu: Device, choice: Choice) -> Result<Self, GpuError> {
         Self::tuned(gpu, choice, &Tuning::default())
     }
 
     /// A backend with a tuning for the device.
     ///
-    /// # Errors As [`GpuBrushFlow::new`].
+    /// # Errors
+    /// As [`GpuBrushFlow::new`].
     pub fn tuned(gpu: Device, choice: Choice, tuning: &Tuning) -> Result<Self, GpuError> {
         let adapter = gpu.name().to_owned();
         let fewest_cells = match choice {

@@ -14,7 +14,8 @@ const TOGETHER: usize = 8;
 impl GpuFlow {
     /// Duration of `count` steps on the device, including their submission by the processor.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn time_steps(
         &mut self,
         conditions: &Conditions,
@@ -34,7 +35,8 @@ impl GpuFlow {
 
     /// Duration of copies that read and write as many bytes as the stages of `count` steps.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn time_copies(&self, count: usize) -> Result<Duration, GpuError> {
         let gpu = &self.gpu;
         gpu.guarded(|| {

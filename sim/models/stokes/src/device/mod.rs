@@ -141,14 +141,16 @@ fn laid_out(
 impl GpuFlow {
     /// Paint at rest in a window, with the iterations of a step in `effort`.
     ///
-    /// # Errors [`GpuError::Window`] where the window is too large for the device; another [`GpuError`] of the device.
+    /// # Errors
+    /// [`GpuError::Window`] where the window is too large for the device; another [`GpuError`] of the device.
     pub fn new(gpu: Device, grid: &Grid, effort: Effort) -> Result<Self, GpuError> {
         Self::tuned(gpu, grid, effort, &Tuning::default())
     }
 
     /// A flow with a tuning for the device.
     ///
-    /// # Errors As [`GpuFlow::new`].
+    /// # Errors
+    /// As [`GpuFlow::new`].
     pub fn tuned(
         gpu: Device,
         grid: &Grid,
@@ -190,7 +192,8 @@ impl GpuFlow {
 
     /// Restarts at rest, without paint to transport, in a window of another grid; memory grows as needed.
     ///
-    /// # Errors [`GpuError::Window`] where the window does not fit: the flow is then unchanged. Another [`GpuError`] of
+    /// # Errors
+    /// [`GpuError::Window`] where the window does not fit: the flow is then unchanged. Another [`GpuError`] of
     /// the device.
     pub fn restart(&mut self, grid: &Grid) -> Result<(), GpuError> {
         let gpu = self.gpu.clone();
@@ -243,7 +246,8 @@ impl GpuFlow {
 
     /// Memory of a window of a grid on a device, bytes, for the iterations of a step in `effort`.
     ///
-    /// # Errors [`GpuError::Window`] where no device's indices suffice.
+    /// # Errors
+    /// [`GpuError::Window`] where no device's indices suffice.
     pub fn window_bytes(grid: &Grid, effort: Effort) -> Result<u64, GpuError> {
         Plan::new(grid, effort.steps.min(MOST_STEPS), 0, Paints::default()).map(|plan| plan.bytes())
     }
@@ -251,7 +255,8 @@ impl GpuFlow {
     /// Dispatches of a step in a window of a grid, and bytes of its stages: each field that a stage reads or writes
     /// once. A device's caches reduce them.
     ///
-    /// # Errors [`GpuError::Window`] where no device's indices suffice.
+    /// # Errors
+    /// [`GpuError::Window`] where no device's indices suffice.
     pub fn traffic(grid: &Grid, effort: Effort, tuning: &Tuning) -> Result<[u64; 2], GpuError> {
         let plan = Plan::new(
             grid,
@@ -265,7 +270,8 @@ impl GpuFlow {
 
     /// Writes a velocity and a pressure.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn write(&self, velocity: &[Vec<f32>; 3], pressure: &[f32]) -> Result<(), GpuError> {
         let [u, v, w] = velocity;
         self.gpu.guarded(|| {
@@ -296,7 +302,8 @@ impl GpuFlow {
     /// One step with cells filled to a fraction, between solids, under conditions, like `Flow::step` of the processor.
     /// Fields are the grid's; it does not wait.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn step(
         &mut self,
         fill: &[f32],
@@ -320,7 +327,8 @@ impl GpuFlow {
 
     /// One step of the state on the device.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn step_again(&mut self, conditions: &Conditions) -> Result<(), GpuError> {
         let gpu = self.gpu.clone();
         gpu.guarded(|| {
@@ -331,7 +339,8 @@ impl GpuFlow {
 
     /// Writes paint: quanta of each by cell.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn write_paints(&self, paints: &[Vec<u32>]) -> Result<(), GpuError> {
         self.gpu.guarded(|| {
             for (number, counts) in paints.iter().take(self.plan.paints.count).enumerate() {
@@ -345,7 +354,8 @@ impl GpuFlow {
     /// Waits for the device, and reads the quanta of each paint by cell. Values beyond periodic sides are those of the
     /// opposite cells.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn read_paints(&mut self) -> Result<Vec<Vec<u32>>, GpuError> {
         let len = self.plan.grid.len();
         let count = self.plan.paints.count;
@@ -385,7 +395,8 @@ impl GpuFlow {
 
     /// Waits for the device, and reads the state of the flow.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn read(&mut self) -> Result<FlowState, GpuError> {
         let len = self.plan.grid.len();
         let offset = |word: u32| 4 * u64::from(word);
@@ -412,7 +423,8 @@ impl GpuFlow {
 
     /// Waits for the device, and reads the velocity alone, axis after axis, on the grid's places.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn read_velocity(&mut self) -> Result<Vec<f32>, GpuError> {
         let bytes = 4 * self.plan.grid.len() as u64;
         let from = 4 * u64::from(self.plan.field(X));
@@ -440,7 +452,8 @@ impl GpuFlow {
 
     /// Waits until the device has finished all steps.
     ///
-    /// # Errors A [`GpuError`] of the device.
+    /// # Errors
+    /// A [`GpuError`] of the device.
     pub fn wait(&self) -> Result<(), GpuError> {
         self.gpu.wait()
     }

@@ -124,7 +124,8 @@ fn levels(finest: &Grid, words: &mut u64) -> Option<Vec<Level>> {
 impl Plan {
     /// The layout for `memory` directions; one workgroup does all levels of at most `rest` cells.
     ///
-    /// # Errors [`GpuError::Window`] for a window without cells or beyond the range of the shaders' indices.
+    /// # Errors
+    /// [`GpuError::Window`] for a window without cells or beyond the range of the shaders' indices.
     pub(crate) fn new(
         grid: &Grid,
         memory: usize,
@@ -188,7 +189,8 @@ impl Plan {
 
     /// Checks that the window has at most `most` bytes.
     ///
-    /// # Errors [`GpuError::Window`].
+    /// # Errors
+    /// [`GpuError::Window`].
     pub(crate) const fn check(&self, most: u64) -> Result<(), GpuError> {
         if self.bytes() <= most {
             return Ok(());

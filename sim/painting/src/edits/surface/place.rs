@@ -24,7 +24,8 @@ pub struct Place {
 impl Place {
     /// Places a surface.
     ///
-    /// # Errors [`ValueError`] for a pose that is invalid or out of reach, and for a zoom out of range.
+    /// # Errors
+    /// [`ValueError`] for a pose that is invalid or out of reach, and for a zoom out of range.
     pub fn new(surface: u32, pose: Pose, zoom: f64) -> Result<Self, ValueError> {
         check_reach(&pose)?;
         let zoom = Zoom::new(zoom)?;

@@ -100,7 +100,8 @@ impl<'de> Deserialize<'de> for Exposure {
 impl LightChange {
     /// The light after the change; `illuminant` is its named spectrum, read by a caller with access to files.
     ///
-    /// # Errors [`LightError`] for a light out of range.
+    /// # Errors
+    /// [`LightError`] for a light out of range.
     pub fn on(
         &self,
         light: &Light,

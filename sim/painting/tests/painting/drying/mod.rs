@@ -290,7 +290,7 @@ fn an_opacity_is_not_lost_and_layers_are_named() {
 
 #[test]
 fn layers_get_names() {
-    let (mut sequencer, _) = two_layers();
+    let (mut sequencer, _) = layered();
     let names = |sequencer: &Sequencer| -> Vec<String> {
         let layers = &sequencer.painting().scene().layers;
         layers.iter().map(|layer| layer.name.clone()).collect()
