@@ -178,14 +178,7 @@ fn more_steps_than_there_are_cannot_be_taken_back() {
     ];
     let fills = "{ fill = \"Bone Black\" },\n{ fill = \"Titanium White\" },";
     script(&place, "day.toml", &format!("{fills}\n{{ undo = 9 }},"));
-    has(
-        &fault(&place, &render, 2),
-        &[
-            "9 steps cannot be taken back: 2 can be",
-            "day.toml:4",
-            "help: { undo = 2 }",
-        ],
-    );
+    has(&fault(&place, &render, 2), &["day.toml:4", "{ undo = 2 }"]);
     script(&place, "day.toml", "{ undo = 1 },");
     has(
         &fault(&place, &render, 2),

@@ -194,9 +194,9 @@ fn what_is_out_of_range_says_what_to_choose() {
     for (steps, words) in [
         (
             "{ opacity = 3, layer = \"x\" }",
-            &["opacity 3", "choose 0 to 1"][..],
+            &["3", "choose 0 to 1"][..],
         ),
-        ("{ dry = 0 }", &["share 0", "choose above 0"]),
+        ("{ dry = 0 }", &["0", "choose above 0"]),
         (
             "{ fill = \"Bone Black\", um = 6000 }",
             &["6000 µm", "choose 1 to 5000"],

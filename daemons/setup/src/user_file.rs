@@ -237,10 +237,6 @@ pub(crate) fn toml_text(device: &DeviceSection) -> Result<String, UserError> {
     toml::to_string(device).map_err(|error| UserError::failure(error.to_string()))
 }
 
-/// Advice on a name where there is no device.
-const NO_DEVICES: &str =
-    "`maulstick device list` shows what is attached, `maulstick device add` adds it";
-
 /// The error that neither the user nor the rig has a device called `name`.
 pub(crate) fn unknown(name: &str, own: &[DeviceSection], in_rig: &[DeviceSection]) -> SetupError {
     let all = own.iter().chain(in_rig);

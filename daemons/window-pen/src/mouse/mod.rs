@@ -33,6 +33,7 @@ const FRAME_NS: u64 = 90_000_000;
 pub struct Pointer {
     /// On the desk, m.
     pub at: [f64; 3],
+    /// Pressed primary button.
     pub pressed: bool,
     /// Turn of the brush about its axis, rad.
     pub twist_rad: f64,
