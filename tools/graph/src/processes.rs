@@ -18,6 +18,7 @@ pub enum Stage {
     Device,
     /// It solves a brush.
     Brush,
+    /// It paints.
     Paint,
     /// It shows, records or supervises.
     Viewer,

@@ -13,7 +13,6 @@ use crate::settings::preferences::Preferences;
 use crate::view::camera::View;
 use crate::view::fit_crosses;
 use crate::view::well_labels::{self, Shown};
-use maulstick_client::force_history;
 use maulstick_window_pen::mouse::Pointer;
 
 /// Length of a newton's arrow, m.
