@@ -154,10 +154,7 @@ fn what_a_rig_cannot_do_with_light_it_refuses_with_words() {
         &["canvas", "light", "--illuminant", "none.csv"],
         &["none.csv", "check the path"],
     );
-    refused(
-        &["canvas", "light", "--samples", "3"],
-        &["not 3", "4 to 16"],
-    );
+    refused(&["canvas", "light", "--samples", "3"], &["4 to 16"]);
     refused(
         &["canvas", "light", "--rule", "simpson"],
         &["gauss, fitted, reference"],

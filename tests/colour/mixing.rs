@@ -183,7 +183,7 @@ fn bad_mixes_are_refused() {
     blue(&["--film-um", "nan"], &["nan", "thickness"]);
     blue(
         &["--film-um", "9", "--over", "grey"],
-        &["grey", "white or black"],
+        &["grey", "white", "black"],
     );
     blue(&["--over", "black"], &["--film-um"]);
     blue(&["--film-um", "9", "--thinner", "1.5"], &["1.5", "share"]);

@@ -32,7 +32,6 @@ fn a_program_beside_gets_its_command_line_and_gives_its_code() {
             &["brush", "sheet", "-o", "a.png"][..],
             "figures brush sheet -o a.png",
         ),
-        (&["brush", "sheet", "--help"], "figures brush sheet --help"),
         (
             &["--overwrite", "colour", "chart"],
             "figures colour chart --overwrite",
@@ -64,6 +63,9 @@ fn a_program_that_is_not_built_is_named_with_how_to_build_it() {
             &[&args[..1].join(" "), "cargo build --release -p", package],
         );
     }
+    let help = run(&place, &["brush", "sheet", "--help"]);
+    assert_eq!(help.status.code(), Some(0), "its help is here: {help:?}");
+    has(&String::from_utf8_lossy(&help.stdout), &["--output"]);
     let unknown = run(&place, &["mine"]);
     assert_eq!(unknown.status.code(), Some(2), "{unknown:?}");
 }

@@ -53,7 +53,7 @@ fn stroke(place: &Place) {
         "--as",
         "left",
         "--start",
-        "4.5",
+        "3",
     ]);
 }
 

@@ -47,7 +47,7 @@ fn stroke(place: &Place, device: &str, start: &str) {
 
 /// Paints with two styluses and commands in between, until nothing is wet.
 fn paint(place: &Place) {
-    let stroke = |device| stroke(place, device, "4.5");
+    let stroke = |device| stroke(place, device, "3");
     place.done(&["load", "Ultramarine Blue=0.6,Titanium White=0.4"]);
     stroke("left");
     place.done(&["load", "Cadmium Red Light"]);
@@ -239,17 +239,17 @@ fn a_paint_node_that_dies_begins_another_file_and_each_is_painted_again() {
     launcher.wait_says("is up");
     let mut recorder = recorder(&place, "s.mcap");
     place.done(&["load", "Bone Black"]);
-    stroke(&place, "left", "4.5");
+    stroke(&place, "left", "3");
     // While it levels each moment has a picture of its own, and its place in the journal says which.
     let levelling = place.done(&["snapshot", "-o", "levelling.png", "--json"]);
     let levelling: Value = serde_json::from_slice(&levelling.stdout).expect("JSON");
-    stroke(&place, "left", "4.5");
+    stroke(&place, "left", "3");
     let paint = place.pid("maulstick-paint").expect("a paint node");
     signal(paint, Signal::SIGKILL);
     launcher.wait_says("'paint' failed and is started again");
     wait_for_painting(&place, "s-2.mcap", &recorder);
     place.done(&["load", "Cadmium Red Light"]);
-    stroke(&place, "right", "4.5");
+    stroke(&place, "right", "3");
     place.done(&["layer", "dry"]);
     let painted = snapshot(&place, "painted.png");
     recorder.signal(Signal::SIGINT);

@@ -151,7 +151,7 @@ fn display_and_sockets() {
         |facts| facts.display.tells_of_pens = Ok(false),
         "display",
         State::Warning,
-        &["as a mouse", "device add"],
+        &["mouse", "device add"],
     );
     check(
         |facts| {
