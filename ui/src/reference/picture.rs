@@ -96,7 +96,7 @@ impl Picture {
 pub(crate) fn unread(error: &ImportError) -> String {
     match error {
         ImportError::File(error) => tr!(
-            "It cannot be read: {error}. See that it is still there.",
+            "It cannot be read: {error}. Check that the file still exists.",
             error
         ),
         ImportError::TooLarge(width, height) | ImportError::Memory(width, height) => tr!(

@@ -340,7 +340,8 @@ mod tests {
         let mut rig = Rig::new();
         for _ in 0..2 {
             rig.state.live.nodes.retain(|other| other != "arm");
-            let left = "The device 'arm' has left. Any other stylus and the mouse go on painting.";
+            let left =
+                "The device 'arm' is disconnected. Any other stylus and the mouse still paint.";
             assert_eq!(rig.look(), note(left));
             rig.state.live.nodes.push("arm".to_owned());
             assert_eq!(rig.look(), note("The device 'arm' is back."));

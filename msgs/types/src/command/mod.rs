@@ -453,8 +453,8 @@ mod tests {
             (0.0, 2.5e-4, "0×20 cm"),
             (1e4, 2.5e-4, "1638 cm"),
             (f64::NAN, 2.5e-4, "NaN"),
-            (0.3, 0.0, "cell 0 mm"),
-            (0.3, f64::INFINITY, "cell inf mm"),
+            (0.3, 0.0, "0 mm"),
+            (0.3, f64::INFINITY, "inf mm"),
             (0.6, 1e-5, "million cells"),
         ] {
             let what = new(width_m, cell_m)

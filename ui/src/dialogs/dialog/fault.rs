@@ -72,7 +72,7 @@ impl fmt::Display for DialogFault {
                 ending
             ),
             Self::NoFolder(folder) => tr!(
-                "There is no folder {folder}. Write one that is there.",
+                "There is no folder {folder}. Enter an existing one.",
                 folder = paths::shown(folder)
             ),
             Self::Taken(file) => tr!(

@@ -176,7 +176,7 @@ impl PresetRows {
         let edit = TextEdit::singleline(&mut self.name)
             .hint_text(tr!("Sky wash"))
             .desired_width(f32::INFINITY);
-        let hover = tr!("What the brush in the hand, its settings and its paint are to be called.");
+        let hover = tr!("Name of a preset of the brush in hand, its settings and its paint.");
         let shown = row(ui, tr!("Name"), |ui| ui.add(edit)).on_hover_text(hover);
         if shown.changed() {
             self.wrong = None;

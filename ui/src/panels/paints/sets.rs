@@ -37,7 +37,7 @@ impl SetRows {
         let edit = TextEdit::singleline(&mut self.name)
             .hint_text(tr!("Portrait"))
             .desired_width(f32::INFINITY);
-        let hover = tr!("What the paints on the palette are to be called as a set.");
+        let hover = tr!("Name of the set of the paints on the palette.");
         let field = row(ui, tr!("Name"), |ui| ui.add(edit)).on_hover_text(hover);
         if field.changed() {
             self.wrong = None;
