@@ -33,8 +33,8 @@ fn a_program_beside_gets_its_command_line_and_gives_its_code() {
             "figures brush sheet -o a.png",
         ),
         (
-            &["--overwrite", "colour", "chart"],
-            "figures colour chart --overwrite",
+            &["--overwrite", "colour", "chart", "-o", "b.png"],
+            "figures colour chart --overwrite -o b.png",
         ),
         (&["mine", "--deep", "help"], "mine mine --deep help"),
     ] {

@@ -90,7 +90,7 @@ impl Future for Work {
 
     fn poll(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Self::Output> {
         let result = Pin::new(&mut self.result).poll(context);
-        result.map(|result| result.unwrap_or_else(|_| Err(RecorderError::Panicked("the task"))))
+        result.map(|result| result.unwrap_or(Err(RecorderError::Panicked("the task"))))
     }
 }
 

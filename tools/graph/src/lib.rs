@@ -16,9 +16,9 @@
 //!     session: "5f3a".into(),
 //!     name: Some("pen".into()),
 //!     process: None,
-//!     sends: vec!["maulstick/studio/stylus/pen/sample".into()],
-//!     receives: Vec::new(),
-//!     answers: Vec::new(),
+//!     sends: ["maulstick/studio/stylus/pen/sample".into()].into(),
+//!     receives: [].into(),
+//!     answers: [].into(),
 //! };
 //! let graph = Graph::of(&[pen], &BTreeMap::new(), &Topics::new("studio"));
 //! assert!(mermaid::text(&graph).contains("n0[\"pen\"]"));

@@ -83,7 +83,11 @@ fn in_words(findings: &DeviceListing) -> String {
     // Devices in use come before possible ones.
     let is_used = is_used(findings);
     let in_rig = in_rig(findings.rig.as_deref());
-    let mut text = is_used.then(|| in_rig.clone() + "\n").unwrap_or_default();
+    let mut text = if is_used {
+        in_rig.clone() + "\n"
+    } else {
+        String::new()
+    };
     if !rows.is_empty() {
         text += &table(["device", "id", "at", "driver", ""], &rows);
     }
