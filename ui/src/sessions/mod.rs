@@ -81,14 +81,6 @@ impl Sessions {
         orders: Vec<SessionOrder>,
         (rig, notifications): (&mut RigState, &mut Notifications),
     ) {
-        for order in orders {
-            if let Err(error) = self.carry_out(order, rig, notifications) {
-                notifications.fault(
-                    tr!("Recorder and player cannot be started: {error}", error),
-                    tr!("Start the rig again."),
-                );
-            }
-        }
         self.cut_off
             .poll(context, &recorder::painting(rig), notifications);
         if let Some(recorder) = &mut self.recorder
@@ -100,6 +92,15 @@ impl Sessions {
             && player::poll(player, context, rig, notifications)
         {
             self.player = None;
+        }
+        // What begins now is shown for a frame, even if it ends at once.
+        for order in orders {
+            if let Err(error) = self.carry_out(order, rig, notifications) {
+                notifications.fault(
+                    tr!("Recorder and player cannot be started: {error}", error),
+                    tr!("Start the rig again."),
+                );
+            }
         }
     }
 
