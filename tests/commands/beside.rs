@@ -34,7 +34,7 @@ fn a_program_beside_gets_its_command_line_and_gives_its_code() {
         ),
         (
             &["--overwrite", "colour", "chart", "-o", "b.png"],
-            "figures colour chart --overwrite -o b.png",
+            "figures --overwrite colour chart -o b.png",
         ),
         (&["mine", "--deep", "help"], "mine mine --deep help"),
     ] {

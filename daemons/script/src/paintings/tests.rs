@@ -118,7 +118,6 @@ fn each_script_is_small_and_says_its_size() {
 }
 
 #[test]
-#[ignore = "long: the flower stands for all"]
 fn the_still_life_has_thick_lights_and_thin_darks() {
     let still = Measured::of("still-life");
     let lemon = [60.0..80.0, 58.0..70.0];
@@ -178,7 +177,7 @@ fn the_flower_stands_thick_before_the_air() {
 }
 
 #[test]
-#[ignore = "long: the flower stands for all"]
+#[ignore = "long: the still life and the flower stand for it"]
 fn the_landscape_is_light_above_and_near_things_are_dark_and_thick() {
     let land = Measured::of("landscape");
     let high = [96.0..124.0, 130.0..146.0];

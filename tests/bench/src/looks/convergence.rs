@@ -171,7 +171,6 @@ mod tests {
         assert!(other[2] > 10.0 * other[0], "from 2 to 4 mm: {other:?}");
     }
 
-    /// Small: two sizes of cells.
     #[test]
     fn a_stroke_leaves_the_same_on_finer_cells() {
         let [coarse, fine] =

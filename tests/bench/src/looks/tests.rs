@@ -63,9 +63,7 @@ fn a_dry_brush_catches_on_the_tooth() {
     );
 }
 
-/// Short: [`a_dry_brush_catches_on_the_tooth`].
 #[test]
-#[ignore = "long: a scumble over all of a dry relief"]
 fn a_scumble_catches_on_ridges() {
     holds(
         marks::scumble,

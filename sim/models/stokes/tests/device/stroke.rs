@@ -108,13 +108,13 @@ fn the_first_steps_leave_the_paint_where_the_processor_does() {
     assert!(off < ELSEWHERE, "{off:e}");
 }
 
-/// So many of 24 states of two strokes that are `shift` mm higher, the second one across what the first has left.
+/// The first `states` of 24 states of two strokes that are `shift` mm higher, the second one across what the first has left.
 fn strokes_of(painting: &mut Painting, states: usize, shift: f64) {
     paint(painting, "main", &stroke(1, shift, 24)[..states]);
     paint(painting, "main", &stroke(2, 1.5 + shift, 24)[..states]);
 }
 
-/// Paints so many states of the strokes on both backends; what the processor painted, and the volume before.
+/// Paints the first `states` of the strokes on both backends; what the processor painted, and the volume before.
 fn painted_the_same(states: usize) -> (Painting, u64) {
     let (mut cpu, mut gpu) = (easel(None), easel(Some(device())));
     let before = volume(&mut cpu);
