@@ -1,4 +1,4 @@
-//! Commands in programs beside this one: those of `tools/`, which `./run` does not build, and others.
+//! Commands in programs beside this one: those of `tools/` and `tests/bench`, which `./run` does not build, and others.
 //!
 //! As with cargo, `maulstick NAME …` runs the program `maulstick-NAME` that lies beside this one, with its own command line.
 //! A program of `tools/` may have commands of several groups, which [`PROGRAMS`] defines.

@@ -5,6 +5,7 @@
 //! | [`cli`] | the command line |
 //! | [`commands`] | its subcommands |
 //! | [`beside`] | commands in programs beside this one |
+//! | `advice` | what to do about a fault, in commands |
 //! | [`up`] | the supervisor |
 //! | [`processes`] | the processes of a rig |
 //! | [`page`] | pictures made of patches, pictures and words |

@@ -104,9 +104,10 @@ fn every_row_of_a_table_of_strokes_is_a_sample_of_the_take() {
         let take = Take::read(&place.path("x.mcap")).expect("a take");
         let length_ms = take.length_ns() / 1_000_000;
         assert_eq!(length_ms, milliseconds, "{name}");
-        let table = match name.starts_with("03") {
-            true => with_points(&text(name)),
-            false => text(name),
+        let table = if name.starts_with("03") {
+            with_points(&text(name))
+        } else {
+            text(name)
         };
         let rows = rows(&table);
         // Between strokes the pen is lifted, which no row says.

@@ -20,9 +20,10 @@ fn strokes(path: &std::path::Path, count: u64, aside: f64) {
     let samples = (0..250 * count).map(|number| {
         let way = (number % 250) as f64 / 200.0;
         let lifted = way >= 1.0;
-        let x = match lifted {
-            true => 0.05 - 0.4 * (way - 1.0),
-            false => 0.1 * way - 0.05,
+        let x = if lifted {
+            0.05 - 0.4 * (way - 1.0)
+        } else {
+            0.1 * way - 0.05
         };
         let swing = maulstick_num::sin(2.0 * std::f64::consts::PI * way);
         TakeSample {

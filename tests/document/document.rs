@@ -124,7 +124,7 @@ fn a_drying_goes_on_after_a_crash_and_layers_become_wet_again() {
     assert!((half / all - 0.5).abs() < 1e-3, "{}", half / all);
     refused(
         &["layer", "dry", "--region", "200,0,9x9"],
-        &["holds no cell", "128.0x128.0 mm"],
+        &["holds no cell", "128.0×128.0 mm"],
     );
     place.done(&["layer", "dry", "--over", "4s", "--layer", "slow"]);
     refused(&["layer", "dry", "--over", "4s"], &["--stop"]);

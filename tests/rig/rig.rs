@@ -411,6 +411,11 @@ fn a_mouse_stroke_in_the_window_is_painted_and_shown() {
     assert!(undone.is_some(), "the undone stroke is still shown");
 }
 
+/// True if the hand presses and no force is on it.
+fn is_unforced(sample: &StylusSample, head_length_m: f64) -> bool {
+    pressed(sample, head_length_m) && sample.force_n == [0.0; 3]
+}
+
 #[test]
 fn a_simulated_hand_paints_and_feels_the_canvas() {
     let place = Place::new();
@@ -454,16 +459,15 @@ fn a_simulated_hand_paints_and_feels_the_canvas() {
     ] {
         let said = place.done(&[&["device", "force"], order].concat()).stdout;
         assert_eq!(String::from_utf8_lossy(&said), format!("phantom: {told}\n"));
-        let done = |sample: &StylusSample| match gives {
-            true => presses_back(sample),
-            false => pressed(sample, head_length_m) && sample.force_n == [0.0; 3],
+        let heard = if gives {
+            hear(&mut samples, presses_back)
+        } else {
+            hear(&mut samples, |sample| is_unforced(sample, head_length_m))
         };
-        assert!(hear(&mut samples, done).is_some(), "{order:?}");
+        assert!(heard.is_some(), "{order:?}");
     }
-    let painted = wait_for(PATIENCE, || {
-        (support::on_canvas(&place) > 0.0).then_some(())
-    });
-    assert!(painted.is_some(), "nothing painted");
+    let painted = || (support::on_canvas(&place) > 0.0).then_some(());
+    wait_for(PATIENCE, painted).expect("painted");
     // Without its brush the force fades though the hand still presses, and comes back with it.
     let brush = place.pid("maulstick-brush").expect("a brush");
     signal(brush, Signal::SIGSTOP);

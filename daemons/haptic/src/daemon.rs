@@ -17,15 +17,16 @@ use maulstick_haptics::Fault;
 use maulstick_rig::{NodeHandle, UserError};
 use maulstick_types::node::NodeWork;
 
-use crate::device::open::HapticSettings;
-use crate::force_state_file::ForceStateFile;
-use crate::servo::channels::TickRecord;
-use crate::servo::servo_thread::Ended;
 use connection::{Attempt, Connection};
 use force_inlets::ForceInlets;
 use force_settings::ForceSettings;
 use orders::Orders;
 use output::Output;
+
+use crate::device::open::HapticSettings;
+use crate::force_state_file::ForceStateFile;
+use crate::servo::channels::TickRecord;
+use crate::servo::servo_thread::Ended;
 
 /// Runs a device in the rig of `member`.
 ///

@@ -15,13 +15,14 @@ use maulstick_types::Origin;
 use maulstick_types::node::NodeWork;
 use maulstick_types::wire::topics::Topics;
 
+use connection::{Attempt, Connection, FoundDevice};
+use output::Output;
+use status_publisher::StatusPublisher;
+
 use crate::device_source::Ports;
 use crate::open::{self, Kind};
 use crate::recorder::Recorder;
 use crate::report_stream::StreamItem;
-use connection::{Attempt, Connection, FoundDevice};
-use output::Output;
-use status_publisher::StatusPublisher;
 
 /// Longest time between two turns.
 const LONGEST_TURN: Duration = Duration::from_millis(20);

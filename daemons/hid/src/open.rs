@@ -4,6 +4,8 @@ use maulstick_device::hid_collections::Collection;
 use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 
+use maulstick_device::pen::Reading;
+
 use crate::descriptor::{self, outermost};
 use crate::device_source::{Found, HidSource, Identity, Ports};
 use crate::evdev::capabilities::Capabilities;
@@ -14,7 +16,6 @@ use crate::layout::Layout;
 use crate::spacemouse::{LIGHT, SpaceMouse, VENDORS};
 use crate::unfit::{MOUSE_WORD, TABLET_WORD, Unfit, UnfitDevice};
 use crate::wacom::Wacom;
-use maulstick_device::pen::Reading;
 
 /// Kinds of devices that `maulstick-hid` drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

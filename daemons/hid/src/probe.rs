@@ -8,10 +8,11 @@ use maulstick_device::corner_calibration::{HandReading, HandSample, Touch};
 use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 
+use maulstick_device::pen::{Pen, Presence, Reading};
+
 use crate::device_source::{HidSource, Identity, Ports};
 use crate::open::{self, Address, Decoder, Kind, Means};
 use crate::recording::{self, Event, LONGEST_REPORT};
-use maulstick_device::pen::{Pen, Presence, Reading};
 
 /// Time without a report after which the last reading is repeated.
 const SILENCE: Duration = Duration::from_millis(50);

@@ -14,9 +14,10 @@ use maulstick_rig::config::{CanvasSection, DeviceSection};
 use maulstick_types::limits::FARTHEST_M;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, switch};
 
-use crate::layout::wrapped;
 use maulstick_device::pen::{End, Presence, Reading, STEEPEST_RAD};
 use maulstick_device::pressure_curve::given;
+
+use crate::layout::wrapped;
 
 /// A tablet fitted to the desk.
 #[derive(Clone, Debug)]

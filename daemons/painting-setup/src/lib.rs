@@ -11,6 +11,7 @@
 //! | [`document`] | paintings in files |
 //! | [`lamp`], [`viewing`] | light over a painting; light, observer and rule of a table of colours |
 //! | [`memory`] | memory that is allocated at once |
+//! | `refusal` | refusals of a painting as the user sees them |
 //! | [`outputs`] | files that are written; none replaces one that is read |
 //! | [`surface`] | grounds and teeth by name and from files; pictures that are read |
 //! | [`take_setup`] | setup that a take embeds |

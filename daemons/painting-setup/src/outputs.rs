@@ -115,19 +115,15 @@ pub enum OutputError {
 
 impl From<OutputError> for UserError {
     fn from(error: OutputError) -> Self {
-        let fault = Self::usage(error.to_string());
-        let (OutputError::IsInput { output, .. }
-        | OutputError::IsOutput { output, .. }
-        | OutputError::Companion(output)) = &error
-        else {
-            let OutputError::Unwritable(path, error) = error else {
-                return fault;
-            };
-            return Self::writing(&path, &error);
-        };
-        fault
-            .at(output.path.display().to_string())
-            .help(format!("give {} another name", output.what))
+        let what = error.to_string();
+        match error {
+            OutputError::Unwritable(path, error) => Self::writing(&path, &error),
+            OutputError::IsInput { output, .. }
+            | OutputError::IsOutput { output, .. }
+            | OutputError::Companion(output) => Self::usage(what)
+                .at(output.path.display().to_string())
+                .help(format!("give {} another name", output.what)),
+        }
     }
 }
 
@@ -196,7 +192,7 @@ impl Relayed {
 /// An [`OutputError`] where one is.
 pub fn check_apart(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), OutputError> {
     for (number, output) in outputs.iter().enumerate() {
-        let is_same = |other: &&UsedFile| is_same(&output.path, &other.path);
+        let is_same = |other: &&UsedFile| is_one_file(&output.path, &other.path);
         let output = output.clone();
         if let Some(input) = inputs.iter().find(is_same).cloned() {
             return Err(OutputError::IsInput { output, input });
@@ -208,8 +204,8 @@ pub fn check_apart(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), Outp
     Ok(())
 }
 
-/// True if two names lead to one file, whether or not it exists.
-fn is_same(one: &Path, other: &Path) -> bool {
+/// True if two names lead to one file, whether or not it exists; unlike paths, hard links do.
+fn is_one_file(one: &Path, other: &Path) -> bool {
     match [one, other].map(FileId::of) {
         [Ok(one), Ok(other)] => one == other,
         [Err(_), Err(_)] => real(one).is_some_and(|real| self::real(other) == Some(real)),

@@ -56,7 +56,7 @@ fn model(name: &str, place: &str) -> Result<String, UserError> {
 /// The painting that the rig's settings ask for.
 ///
 /// # Errors
-/// A [`UserError`] for a well that is no mixture, or an invalid light.
+/// A [`UserError`] for a well that is no mixture, an invalid light, an unknown model or ground.
 pub fn painting_setup(
     config: &RigConfig,
     library: &PaintLibrary,

@@ -16,15 +16,16 @@ use maulstick_types::scene::CANVAS;
 use maulstick_types::wire::topics::check_name;
 use serde::Deserialize as _;
 
-use super::Act;
-use super::entries::file;
-use super::step::Step;
-use super::stroke::{Stroke, Turn};
 use maulstick_painting_setup::lamp::changed;
 use maulstick_painting_setup::outputs::UsedFile;
 use maulstick_painting_setup::surface::ground::GroundFile;
 use maulstick_painting_setup::surface::tooth::ToothPicture;
 use maulstick_painting_setup::{brush_file, mixture_of, refused};
+
+use super::Act;
+use super::entries::file;
+use super::step::Step;
+use super::stroke::{Stroke, Turn};
 
 /// Default lean of a stroke's handle, degrees.
 const LEAN_DEG: f64 = 25.0;

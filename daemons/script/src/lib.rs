@@ -16,8 +16,9 @@
 //! | --- | --- |
 //! | `entries` | keys and what they hold, each with its line |
 //! | `step` | a step as it is written |
-//! | `steps` | which steps there are, and what keys each has |
-//! | `acts` | what each step does |
+//! | `steps` | kinds of steps, and the keys of each |
+//! | `acts` | the action of each step |
+//! | `duration` | times of the painting's clock |
 //! | [`advice`] | what to do about a refusal, in steps |
 //! | [`stroke`] | a stroke written as points |
 //! | `script_runner` | [`ScriptRunner`]: a script painted |
@@ -65,12 +66,13 @@ use maulstick_types::Edit;
 use maulstick_types::Mixture;
 use toml::de::DeTable;
 
-use self::entries::Source;
-use self::stroke::Stroke;
-use crate::duration::time_ns;
 use maulstick_painting_setup::outputs::UsedFile;
 use maulstick_painting_setup::surface::ground::GroundFile;
 use maulstick_painting_setup::surface::tooth::ToothPicture;
+
+use self::entries::Source;
+use self::stroke::Stroke;
+use crate::duration::time_ns;
 
 /// Action of a step.
 #[derive(Clone, Debug)]

@@ -12,10 +12,11 @@ use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_rig::UserError;
 use maulstick_session::Offline;
 
-use crate::Script;
-use crate::ScriptRunner;
 use maulstick_painting_setup::cells::SheetCells;
 use maulstick_painting_setup::refused;
+
+use crate::Script;
+use crate::ScriptRunner;
 
 /// Names and scripts of the paintings.
 pub const PAINTINGS: [(&str, &str); 3] = [

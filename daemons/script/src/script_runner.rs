@@ -16,12 +16,13 @@ use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::values::{BrushName, MaterialName};
 
-use crate::duration::time_ns;
-use crate::{Act, Script};
 use maulstick_painting_setup::lamp::changed;
 use maulstick_painting_setup::refused;
 use maulstick_painting_setup::surface::ground::GroundFile;
 use maulstick_painting_setup::surface::tooth::ToothPicture;
+
+use crate::duration::time_ns;
+use crate::{Act, Script};
 
 /// Time before a take or a stroke, ns: strokes of two are never one.
 const PAUSE_NS: u64 = 1_000_000_000;

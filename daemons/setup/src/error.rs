@@ -79,7 +79,7 @@ pub enum SetupError {
     #[error(transparent)]
     Rule(#[from] RuleError),
     /// A change failed, and so did taking it back.
-    #[error("{what}; the rig does not take '{device}' back: {why}")]
+    #[error("{what}; the rig cannot be set back for '{device}': {why}")]
     NotTakenBack {
         /// The device.
         device: String,
@@ -171,7 +171,8 @@ impl From<SetupError> for UserError {
             ),
             SetupError::Rule(_) => Self::failure(what).at(RULE).help(ALLOW_BY_HAND),
             SetupError::NotTakenBack { device, .. } => Self::failure(what).help(format!(
-                "it is kept: `maulstick device use {device}` puts it back"
+                "`maulstick device list` shows whether the rig has it: `maulstick device use {device}` puts it there, \
+                 `maulstick device remove {device}` takes it out"
             )),
         }
     }

@@ -30,8 +30,7 @@ pub fn rename(device: &str, name: &str, rig: &str) -> Result<(), SetupError> {
     if let Some(running) = running.filter(|_| is_own)
         && let Err(fault) = replace(&mut rig, running, name)
     {
-        file.rename(name, device)?;
-        return Err(fault);
+        return Err(unless_undone(device, fault, file.rename(name, device)));
     }
     Ok(())
 }

@@ -17,12 +17,13 @@ use maulstick_types::command::advice::Advice;
 use maulstick_types::values::{BrushName, BrushToml};
 use serde_json::json;
 
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
+use maulstick_painting_setup::{brush_file, of_a_brush};
+
 use crate::commands::client::{Client, Target};
 use crate::commands::edit::{self, BrushEdit};
 use crate::commands::say;
 use crate::commands::{print_json, print_text};
-use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
-use maulstick_painting_setup::{brush_file, of_a_brush};
 
 /// `maulstick brush`.
 #[derive(Subcommand, Clone, Debug)]

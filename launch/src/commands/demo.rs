@@ -9,10 +9,11 @@ use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use maulstick_types::scene::CANVAS;
 
-use crate::commands::{progress_bar, say, write_picture, write_take};
 use maulstick_painting_setup::library;
 use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 use maulstick_script::paintings::{BoardOptions, paint, script};
+
+use crate::commands::{progress_bar, say, write_picture, write_take};
 
 /// Commands of `maulstick demo`.
 #[derive(Clone, Debug, Subcommand)]

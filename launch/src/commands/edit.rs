@@ -6,9 +6,10 @@ use maulstick_painting::edits::{self, CommandForm, Ground, GroundSource};
 use maulstick_rig::UserError;
 use maulstick_types::Edit;
 
+use maulstick_painting_setup::surface::ground::GroundFile;
+
 use crate::commands::client::{Client, Target};
 use crate::commands::say;
-use maulstick_painting_setup::surface::ground::GroundFile;
 
 /// Commands that stand beside the groups as well, each with its group.
 pub const DAILY: [(&str, &str); 4] = [

@@ -13,8 +13,9 @@ use maulstick_rig::config::{
 use maulstick_rig::node_handle::CONFIG_FILE;
 use nix::sys::signal::Signal;
 
-use super::{MOUSE, NodeOptions, PEN, PLAYER, brush_node_name};
 use maulstick_painting_setup::brush_file;
+
+use super::{MOUSE, NodeOptions, PEN, PLAYER, brush_node_name};
 
 /// Options of a brush node.
 #[derive(clap::Args, Debug)]

@@ -7,8 +7,9 @@ use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use nix::sys::signal::Signal;
 
-use super::{NodeOptions, device_named};
 use maulstick_painting_setup::outputs::{UsedFile, check_outputs, named_by};
+
+use super::{NodeOptions, device_named};
 
 /// Suffix of the name of a device's recorder.
 const RECORDER: &str = "-recorder";

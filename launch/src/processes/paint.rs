@@ -18,11 +18,12 @@ use maulstick_rig::{NodeHandle, UserError};
 use maulstick_types::paint::Decision;
 use nix::sys::signal::Signal;
 
-use super::NodeOptions;
 use maulstick_painting_setup::backend::choose_backend;
 use maulstick_painting_setup::destination::{VIEW, export};
 use maulstick_painting_setup::document::{go_on_in_rig, wrong};
 use maulstick_painting_setup::{library_from, painting_setup, refused};
+
+use super::NodeOptions;
 
 /// Greatest number of turns of a paint node after the request to stop, for which the launcher waits.
 const LAST_TURNS: u32 = 8;

@@ -9,8 +9,9 @@ use maulstick_rig::UserError;
 use maulstick_types::Mixture;
 use nix::sys::signal::Signal;
 
-use super::{NodeOptions, PLAYER};
 use maulstick_painting_setup::refused;
+
+use super::{NodeOptions, PLAYER};
 
 /// Options of the player.
 #[derive(clap::Args, Debug)]

@@ -3,9 +3,10 @@
 use maulstick_rig::UserError;
 use nix::sys::signal::Signal;
 
-use super::{MOUSE, NodeOptions, PEN};
 use maulstick_painting_setup::destination::{VIEW, export};
 use maulstick_painting_setup::library_from;
+
+use super::{MOUSE, NodeOptions, PEN};
 
 /// Options of the window.
 #[derive(clap::Args, Debug)]

@@ -16,9 +16,10 @@ use maulstick_types::stylus::{TakeEnd, TakeStatus};
 use maulstick_types::wire::topics::Topics;
 use tokio::task::spawn_blocking;
 
+use maulstick_painting_setup::outputs::Relayed;
+
 use crate::processes::{PLAYER, Program};
 use crate::up::plan::{NodeSpec, Role, node};
-use maulstick_painting_setup::outputs::Relayed;
 
 /// A take to play, and its output.
 #[derive(Clone, Debug)]

@@ -28,15 +28,16 @@ use maulstick_rig::log::log_to_stderr;
 use maulstick_rig::{UserError, user_devices};
 use maulstick_types::Mixture;
 
-use crate::runtime::{EndSignals, block_on};
-use crate::up::conductor::Performance;
-use crate::up::plan::{Hands, NodeSpec, Window};
-use crate::up::supervisor::{Start, Supervisor, sketch};
 use maulstick_painting_setup::cells::{check_memory, check_speed, picture_settings};
 use maulstick_painting_setup::destination::{VIEW, export};
 use maulstick_painting_setup::document::{Presence, measure, presence, wrong};
 use maulstick_painting_setup::outputs::{Relayed, UsedFile, check_outputs, named_by};
 use maulstick_painting_setup::{PaintingOptions, library_from, painting_setup, refused};
+
+use crate::runtime::{EndSignals, block_on};
+use crate::up::conductor::Performance;
+use crate::up::plan::{Hands, NodeSpec, Window};
+use crate::up::supervisor::{Start, Supervisor, sketch};
 
 /// Folder of the files embedded in the played take, in the rig's folder.
 const KIT: &str = "kit";
@@ -272,7 +273,7 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
     })
 }
 
-/// Makes the paths of settings absolute, except takes that have been read.
+/// Makes the paths of settings absolute; fails where a take cannot be read.
 fn make_absolute(config: &mut RigConfig) -> Result<(), UserError> {
     for device in &mut config.device {
         if let Some(hand) = &mut device.hand {

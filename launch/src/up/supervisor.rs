@@ -44,10 +44,6 @@ use maulstick_types::Mixture;
 use maulstick_types::node::NodeStatus;
 use maulstick_types::wire::topics::Topics;
 
-use crate::runtime::{EndSignals, exit_code};
-use crate::up::conductor::{Conductor, Performance};
-use crate::up::plan::{Hands, NodeSpec, Role};
-use crate::up::processes::{Ended, Processes};
 use checks::Checks;
 use crew::Crew;
 use folder::FolderWatch;
@@ -58,6 +54,11 @@ use shown::Shown;
 use switch::{CLOSE_TIME, Switch};
 use turns::Turns;
 use watchdog::Watchdog;
+
+use crate::runtime::{EndSignals, exit_code};
+use crate::up::conductor::{Conductor, Performance};
+use crate::up::plan::{Hands, NodeSpec, Role};
+use crate::up::processes::{Ended, Processes};
 
 /// Time for all nodes to end on request; paint that writes a file has the switch's time.
 const GRACE: Duration = Duration::from_millis(1200);

@@ -18,9 +18,10 @@ use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
+use outcomes::Outcomes;
+
 use crate::request::{Peer, Request};
 use crate::stroke_barrier::Ready;
-use outcomes::Outcomes;
 
 /// Longest wait for a node's answer to a command.
 const PATIENCE: Duration = Duration::from_secs(10);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-/// True if two names lead to the same file.
+/// True if two names are one path, links followed. A hard link is another path, although it leads to the same file.
 #[must_use]
 pub fn is_same(one: &Path, other: &Path) -> bool {
     let real = |path: &Path| std::fs::canonicalize(path).ok();

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::user_error::UserError;
 use maulstick_bus::typed::{ask, random_epoch, random_u64};
 use maulstick_bus::{Bus, BusError, Qos};
 use maulstick_types::command::{
@@ -11,6 +10,8 @@ use maulstick_types::command::{
 };
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
+
+use crate::user_error::UserError;
 
 /// Time after which an unanswered command is sent again.
 const ASK: Duration = Duration::from_secs(2);

@@ -4,13 +4,14 @@ use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::error::LookError;
 use maulstick_canvas::assets::{Assets, Colours, IMAGE, SPECTRUM, hash_of};
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::tile::TileId;
 use maulstick_optics::colour::{SrgbTable, srgb_decode};
 use maulstick_optics::{Reflectance, Smooth, Spectrum, Studio, Under, Upsampler};
 use maulstick_types::paint::TILE;
+
+use crate::error::LookError;
 
 /// Grounds by name: internal reflectance, equal at every wavelength. Acrylic gesso is titanium white and chalk in a
 /// lean binder.

@@ -1,9 +1,10 @@
 //! The scene's light as input of the optics.
 
-use crate::error::LookError;
 use maulstick_optics::colour::apply;
 use maulstick_optics::{Illuminant, Observer, RuleKind, Spectrum, StudioSettings};
 use maulstick_types::scene::Light;
+
+use crate::error::LookError;
 
 /// Optical settings of the light, without its direction and strength.
 ///

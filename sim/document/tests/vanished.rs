@@ -56,8 +56,9 @@ fn after_a_kill(path: &Path) -> Vec<String> {
     print(&mut easel.sequencer)
 }
 
-/// Paints, has `harm` done to the file, paints on, and sees what is found where the painting went.
-fn painted_on(harm: impl Fn(&Path)) {
+/// Paints, has `harm` done to the file, which is called by its `cause`, paints on, and sees what is found where the
+/// painting went.
+fn painted_on(harm: impl Fn(&Path), cause: &str) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("sea.maul");
     let mut easel = Easel::begin(&settings(&path));
@@ -70,6 +71,7 @@ fn painted_on(harm: impl Fn(&Path)) {
     easel.document.update_path();
     let kept = folder.path().join("sea-kept.maul");
     assert!(what.contains("sea-kept.maul"), "{what}");
+    assert!(what.contains(cause), "{what}");
     assert_eq!(easel.document.path(), kept);
     paint(&mut easel, &mut painter);
     easel.document.flush();
@@ -97,26 +99,29 @@ fn cut(path: &Path, [part, whole]: [u64; 2]) {
 #[test]
 fn a_journal_cut_short_in_place_loses_nothing() {
     for share in [[0, 1], [1, 2], [9, 10]] {
-        painted_on(|path| cut(&journal(path), share));
+        painted_on(|path| cut(&journal(path), share), "short");
     }
 }
 
 #[test]
 fn a_file_cut_short_in_place_loses_nothing_that_is_in_memory() {
     for share in [[0, 1], [1, 2]] {
-        painted_on(|path| cut(path, share));
+        painted_on(|path| cut(path, share), "short");
     }
 }
 
 #[test]
 fn a_journal_cut_to_nothing_and_written_on_is_noticed() {
-    painted_on(|path| {
-        let file = std::fs::File::options().write(true).open(journal(path));
-        let file = file.expect("it is there");
-        let bytes = file.metadata().expect("it is there").len();
-        file.set_len(0).expect("cut");
-        file.set_len(2 * bytes).expect("written on");
-    });
+    painted_on(
+        |path| {
+            let file = std::fs::File::options().write(true).open(journal(path));
+            let file = file.expect("it is there");
+            let bytes = file.metadata().expect("it is there").len();
+            file.set_len(0).expect("cut");
+            file.set_len(2 * bytes).expect("written on");
+        },
+        "short",
+    );
 }
 
 #[test]
@@ -223,30 +228,42 @@ fn a_painting_that_was_cut_short_and_gets_no_file_beside_it_goes_on_where_it_is_
 
 #[test]
 fn a_removed_journal_loses_nothing() {
-    painted_on(|path| std::fs::remove_file(journal(path)).expect("removed"));
+    painted_on(
+        |path| std::fs::remove_file(journal(path)).expect("removed"),
+        "removed",
+    );
 }
 
 #[test]
 fn a_replaced_journal_loses_nothing() {
-    painted_on(|path| {
-        let other = path.with_extension("png");
-        std::fs::write(&other, "a picture").expect("written");
-        std::fs::rename(&other, journal(path)).expect("renamed");
-    });
+    painted_on(
+        |path| {
+            let other = path.with_extension("png");
+            std::fs::write(&other, "a picture").expect("written");
+            std::fs::rename(&other, journal(path)).expect("renamed");
+        },
+        "replaced",
+    );
 }
 
 #[test]
 fn a_removed_file_loses_nothing() {
-    painted_on(|path| std::fs::remove_file(path).expect("removed"));
+    painted_on(
+        |path| std::fs::remove_file(path).expect("removed"),
+        "removed",
+    );
 }
 
 #[test]
 fn a_replaced_file_loses_nothing_and_stays_as_it_is() {
-    painted_on(|path| {
-        let other = path.with_extension("txt");
-        std::fs::write(&other, "a shopping list").expect("written");
-        std::fs::rename(&other, path).expect("renamed");
-    });
+    painted_on(
+        |path| {
+            let other = path.with_extension("txt");
+            std::fs::write(&other, "a shopping list").expect("written");
+            std::fs::rename(&other, path).expect("renamed");
+        },
+        "replaced",
+    );
 }
 
 #[test]

@@ -9,9 +9,10 @@
 //! because the paint may have come to rest and then only drags. Held, f₀ would push the hand with energy that the paint
 //! has lost.
 
-use crate::bartlett_hanning::step_response;
 use glam::{DMat3, DVec3};
 use maulstick_types::haptics::{ContactModel, FluidForce};
+
+use crate::bartlett_hanning::step_response;
 
 /// Greatest drag, N·s/m: more, on a velocity in encoder steps, would shake by itself.
 pub const MOST_DRAG: f64 = 0.8;

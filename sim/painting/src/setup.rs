@@ -1,6 +1,5 @@
 //! The scene of a new painting.
 
-use crate::error::{EditError, SurfaceError};
 use maulstick_appearance::ground::check_ground;
 use maulstick_appearance::light::studio_settings;
 use maulstick_brush::palette_place::{Side, beside};
@@ -8,12 +7,13 @@ use maulstick_canvas::assets::{Assets, IMAGE};
 use maulstick_canvas::relief::Relief;
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_canvas::relief::tooth_picture::PictureTooth;
+use maulstick_models::{MODELS, model_called};
 use maulstick_optics::PaintLibrary;
 use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
 use maulstick_types::values::CellSide;
 use maulstick_types::{Mixture, Pose};
 
-use maulstick_models::{MODELS, model_called};
+use crate::error::{EditError, SurfaceError};
 
 /// Paints in the wells of a new palette.
 pub const PALETTE_PAINTS: [&str; 10] = [

@@ -3,8 +3,9 @@
 use maulstick_haptic::servo::servo_thread::PRIORITY;
 use serde::Serialize;
 
-use super::facts::{CLOCK, Clock, Disk, Display, Facts, Graphics, RealTime};
 use maulstick_device_setup::attached::{Attached, Permission};
+
+use super::facts::{CLOCK, Clock, Disk, Display, Facts, Graphics, RealTime};
 
 const MB: u64 = 1 << 20;
 /// Lockable memory needed for pictures to reach the window without the socket, bytes; and free memory needed.

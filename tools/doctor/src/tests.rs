@@ -8,10 +8,11 @@ use maulstick_gpu::{AdapterReport, GpuError};
 use maulstick_rig::UserError;
 use serde_json::json;
 
+use maulstick_device_setup::attached::{Attached, Permission};
+
 use super::facts::{Clock, Disk, Display, Facts, Governor, Graphics, RealTime, clock, governors};
 use super::in_words;
 use super::judge::{Finding, State, judge};
-use maulstick_device_setup::attached::{Attached, Permission};
 
 const GB: u64 = 1 << 30;
 

@@ -9,8 +9,6 @@ use maulstick_num::sin;
 use maulstick_types::Pose;
 use maulstick_types::haptics::{ContactModel, FluidForce, ForceLaw};
 
-use super::link::Link;
-use super::{DAMPING_N_S_M, DT, HEAD_M, MAX_STIFFNESS_N_M};
 use maulstick_haptics::contact::Contact;
 use maulstick_haptics::extent::Extent;
 use maulstick_haptics::fluid::Fluid;
@@ -19,6 +17,9 @@ use maulstick_haptics::servo::Servo;
 use maulstick_haptics::servo::fault::Fault;
 use maulstick_haptics::servo::limits::Limits;
 use maulstick_haptics::servo::tick::Sender;
+
+use super::link::Link;
+use super::{DAMPING_N_S_M, DT, HEAD_M, MAX_STIFFNESS_N_M};
 
 /// Stiffness of the wall, N/m.
 const WALL_N_M: f64 = 200.0;

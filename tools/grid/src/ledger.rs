@@ -7,9 +7,10 @@
 
 use glam::DVec3;
 
-use super::{DT, GuideLine, HEAD_M, MAX_STIFFNESS_N_M, RECOVERY_S};
 use maulstick_haptics::contact::{Contact, HandleState};
 use maulstick_haptics::plant::Plant;
+
+use super::{DT, GuideLine, HEAD_M, MAX_STIFFNESS_N_M, RECOVERY_S};
 
 /// Length of a path out along the normal that ends beyond all contact, m.
 const OUT_M: f64 = 1.2e-2;

@@ -18,7 +18,6 @@ use maulstick_num::geometry::rotation;
 use maulstick_num::{cos, sin};
 use maulstick_types::haptics::{ContactModel, ForceLaw, GuideModel};
 
-use self::link::Link;
 use maulstick_haptics::contact::Contact;
 use maulstick_haptics::extent::Extent;
 use maulstick_haptics::guide::{Guide, GuideBounds};
@@ -27,6 +26,8 @@ use maulstick_haptics::servo::Servo;
 use maulstick_haptics::servo::fault::Fault;
 use maulstick_haptics::servo::limits::Limits;
 use maulstick_haptics::servo::tick::Sender;
+
+use self::link::Link;
 
 /// The hands of the grid.
 pub const HANDS: [Hand; 3] = [Hand::FINGERTIP, Hand::PEN_GRIP, Hand::ARM];

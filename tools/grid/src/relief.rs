@@ -8,13 +8,6 @@ use glam::DVec3;
 use maulstick_num::sin;
 use maulstick_types::haptics::{ContactModel, ForceLaw, HeightPatch, height_bytes};
 
-use super::fluid::Film;
-use super::ledger::Ledger;
-use super::link::{Link, random};
-use super::{
-    DT, END_S, FORCE_ERROR, GuideLine, HEAD_M, MOVED_S, Motion, NO_ENERGY_J, Path, RECOVERY_S, Run,
-    STILL_M, STILL_S, TOUCH_S, Wall, grid,
-};
 use maulstick_haptics::contact::Contact;
 use maulstick_haptics::extent::Extent;
 use maulstick_haptics::fluid::Fluid;
@@ -23,6 +16,14 @@ use maulstick_haptics::plant::Plant;
 use maulstick_haptics::servo::Servo;
 use maulstick_haptics::servo::fault::Fault;
 use maulstick_haptics::servo::tick::Sender;
+
+use super::fluid::Film;
+use super::ledger::Ledger;
+use super::link::{Link, random};
+use super::{
+    DT, END_S, FORCE_ERROR, GuideLine, HEAD_M, MOVED_S, Motion, NO_ENERGY_J, Path, RECOVERY_S, Run,
+    STILL_M, STILL_S, TOUCH_S, Wall, grid,
+};
 
 /// Side of a cell, m.
 const CELL_M: f64 = 1e-3;

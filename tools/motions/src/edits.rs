@@ -9,7 +9,6 @@ use maulstick_motion::{
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 
-use crate::recorded::read_motion;
 use maulstick::commands::write_take;
 use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 use maulstick_tool_options::motion::refused;
@@ -17,6 +16,8 @@ use maulstick_tool_options::motions::{
     CutOptions, JoinOptions, MirrorAxis, MirrorOptions, MoveOptions, RetimeOptions, RotateOptions,
     ScaleOptions, TakeFiles,
 };
+
+use crate::recorded::read_motion;
 
 /// Reads a take, has its motion changed and writes it.
 fn change(

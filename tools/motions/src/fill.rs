@@ -5,11 +5,12 @@ use maulstick_motion::{Fill, filled, strokes};
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 
-use crate::outline_file::read_outline;
 use maulstick::commands::{say, write_take};
 use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 use maulstick_tool_options::motion::refused;
 use maulstick_tool_options::motions::FillOptions;
+
+use crate::outline_file::read_outline;
 
 pub(crate) fn run(options: &FillOptions) -> Result<i32, UserError> {
     let output = options.output();

@@ -6,10 +6,11 @@ use maulstick_motion::{Stroke, strokes};
 use maulstick_rig::UserError;
 use serde_json::json;
 
-use crate::recorded::read_motion;
 use maulstick::commands::table::table;
 use maulstick::commands::{print_json, print_text, say};
 use maulstick_tool_options::motions::StrokesOptions;
+
+use crate::recorded::read_motion;
 
 /// Measures of a stroke.
 struct Measures {

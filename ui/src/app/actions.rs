@@ -5,6 +5,8 @@ use glam::{DVec2, DVec3};
 use maulstick_brush::palette_place::{Side, beside, is_out, is_same, mirrored, over, size_m};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 
+use maulstick_window_pen::mouse::Pointer;
+
 use super::{App, STILL};
 use crate::input::keys::Action;
 use crate::input::navigation::{Around, is_panel, place};
@@ -13,7 +15,6 @@ use crate::settings::preferences::Preferences;
 use crate::view::camera::View;
 use crate::view::fit_crosses;
 use crate::view::well_labels::{self, Shown};
-use maulstick_window_pen::mouse::Pointer;
 
 /// Length of a newton's arrow, m.
 const ARROW_M_N: f64 = 0.02;

@@ -3,6 +3,9 @@
 use eframe::egui::Context;
 use maulstick_rig::{NodeHandle, UserError};
 
+use maulstick_window_pen::mouse::brush_turn::BrushTurn;
+use maulstick_window_pen::mouse::{Mouse, Pointer};
+
 use crate::app::studio::Studio;
 use crate::input::clean_key::CleanKey;
 use crate::input::navigation::Navigation;
@@ -12,8 +15,6 @@ use crate::input::pointer_path::PointerPath;
 use crate::rig::brushes::BrushTracker;
 use crate::rig::state::BrushContact;
 use crate::view::camera::View;
-use maulstick_window_pen::mouse::brush_turn::BrushTurn;
-use maulstick_window_pen::mouse::{Mouse, Pointer};
 
 /// Mouse, pen and gestures.
 pub(super) struct Hands {

@@ -1,7 +1,8 @@
 //! Placements of surfaces that wait until no brush touches one.
 
-use crate::rig::state::BrushContact;
 use maulstick_client::request::Request;
+
+use crate::rig::state::BrushContact;
 
 /// Waiting placements: the desk is never moved under a brush.
 #[derive(Debug, Default)]

@@ -9,6 +9,8 @@ mod table_of_keys;
 use eframe::egui::{self, Context, Rect, Ui};
 use maulstick_types::scene::Light;
 
+use maulstick_client::dispatcher::Outcome;
+
 use self::column::Column;
 use self::first_run::FirstRun;
 use self::help_pages::HelpPages;
@@ -33,7 +35,6 @@ use crate::settings::brush_memory::BrushMemory;
 use crate::settings::preferences::Preferences;
 use crate::settings_page::SettingsPage;
 use crate::widgets::context::{PanelContext, ask};
-use maulstick_client::dispatcher::Outcome;
 
 /// Turn of the mouse's brush by one press of a key, degrees.
 const TURN_DEG: f64 = 15.0;

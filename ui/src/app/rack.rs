@@ -228,10 +228,12 @@ fn cell(ui: &mut Ui, work: &PanelContext<'_>, place: &Place<'_>) -> Response {
     if ui.is_rect_visible(area) {
         let visuals = ui.visuals();
         let look = ui.style().interact(&response);
-        let (fill, text) = match place.in_hand {
-            true => (visuals.selection.bg_fill, visuals.selection.stroke.color),
-            false if response.hovered() => (look.weak_bg_fill, look.text_color()),
-            false => (eframe::egui::Color32::TRANSPARENT, visuals.text_color()),
+        let (fill, text) = if place.in_hand {
+            (visuals.selection.bg_fill, visuals.selection.stroke.color)
+        } else if response.hovered() {
+            (look.weak_bg_fill, look.text_color())
+        } else {
+            (eframe::egui::Color32::TRANSPARENT, visuals.text_color())
         };
         ui.painter().rect_filled(area, 6.0, fill);
         let picture =

@@ -13,10 +13,11 @@ use eframe::egui::{
     TextStyle, Ui, Vec2, WidgetInfo, vec2,
 };
 
-use crate::dialogs::dialog;
-use crate::dialogs::paths;
 use folder::{Entry, Folder};
 use pictures::Pictures;
+
+use crate::dialogs::dialog;
+use crate::dialogs::paths;
 
 /// Height of the list, points.
 const HEIGHT: f32 = 176.0;

@@ -34,15 +34,16 @@ use maulstick_types::command::{Command, FileCommand, RigCommand};
 use maulstick_ui_kit::background_task::BackgroundTask;
 use maulstick_ui_kit::language::translated;
 
+use choose::ChooseFile;
+use close::{ClosePainting, Decision};
+use dialog::fault::named;
+
 use crate::advice;
 use crate::input::keys::Action;
 use crate::reference::Reference;
 use crate::rig::state::RigState;
 use crate::sessions::SessionOrder;
 use crate::widgets::context::PanelContext;
-use choose::ChooseFile;
-use close::{ClosePainting, Decision};
-use dialog::fault::named;
 pub(crate) use dialog::wrong;
 use dialog::{Answer, in_words};
 use dropped::Dropped;

@@ -13,15 +13,16 @@ use maulstick_types::command::{BrushCommand, Command};
 use maulstick_types::scene::{BrushHandling, Tuning};
 use maulstick_types::values::{BrushName, BrushToml};
 
+use maulstick_brush::file::quantities::HeadWidth;
+use maulstick_client::dispatcher::Outcome;
+use maulstick_client::request::Request;
+use maulstick_types::values::Quantity;
+
 use crate::panels::desk_edits;
 use crate::rig::state::{BrushContact, RigBrush};
 use crate::settings::brush_library::{called, is_of_library, library, of_library};
 use crate::settings::brush_load::{BrushLoad, written};
 use crate::widgets::context::PanelContext;
-use maulstick_brush::file::quantities::HeadWidth;
-use maulstick_client::dispatcher::Outcome;
-use maulstick_client::request::Request;
-use maulstick_types::values::Quantity;
 
 /// A painter's step from one width to the next: this factor, but at least half a millimetre.
 const STEP: f64 = 0.15;
@@ -61,9 +62,10 @@ pub(crate) fn widths_mm(file: &BrushFile) -> RangeInclusive<f64> {
         good
     };
     let sizes = file.sizes_mm.iter().copied();
-    let [least, most] = match file.sizes_mm.is_empty() {
-        true => [*HeadWidth::USUAL.start(), *HeadWidth::USUAL.end()],
-        false => [sizes.clone().fold(now, f64::min), sizes.fold(now, f64::max)],
+    let [least, most] = if file.sizes_mm.is_empty() {
+        [*HeadWidth::USUAL.start(), *HeadWidth::USUAL.end()]
+    } else {
+        [sizes.clone().fold(now, f64::min), sizes.fold(now, f64::max)]
     };
     farthest(least.min(now))..=farthest(most.max(now))
 }

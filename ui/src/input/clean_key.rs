@@ -2,9 +2,10 @@
 
 use maulstick_types::scene::{BrushHandling, BrushMode};
 
+use maulstick_client::request::Request;
+
 use crate::panels::desk_edits;
 use crate::rig::requests::Requests;
-use maulstick_client::request::Request;
 
 /// Longest press that counts as a tap, s.
 const TAP_S: f64 = 0.25;

@@ -8,12 +8,13 @@ use maulstick_brush::placement::SurfacePlacement;
 use maulstick_num::exp;
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 
+use maulstick_client::request::Request;
+
 use crate::input::keymap::Keymap;
 use crate::input::keys::Action;
 use crate::input::presses;
 use crate::rig::requests::Requests;
 use crate::view::camera::View;
-use maulstick_client::request::Request;
 
 /// A line of the wheel zooms by e to this power.
 const WHEEL: f64 = 0.12;

@@ -17,11 +17,12 @@ mod tests;
 use eframe::egui::{Context, Painter};
 use maulstick_types::scene::Surface;
 
+use choose_motion::ChooseMotion;
+use placing::Placing;
+
 use crate::input::keys::Action;
 use crate::view::camera::View;
 use crate::widgets::context::PanelContext;
-use choose_motion::ChooseMotion;
-use placing::Placing;
 
 /// Motions in the window.
 #[derive(Debug, Default)]

@@ -93,22 +93,22 @@ pub(crate) fn load_from(
     .into())
 }
 
-/// Uses a brush so.
+/// Sets mode and limits of a brush.
 pub(crate) fn handle(handling: &BrushHandling) -> Result<Command, ValueError> {
     Handle::try_from(handling).map(Into::into)
 }
 
-/// Makes a brush so stiff and wet.
+/// Sets stiffness and wetness of a brush.
 pub(crate) fn tune(tuning: &Tuning) -> Result<Command, ValueError> {
     Tune::try_from(tuning).map(Into::into)
 }
 
-/// Lays the palette there.
+/// Places the palette.
 pub(crate) fn lay_palette(pose: Pose, zoom: f64) -> Result<Command, ValueError> {
     Place::new(PALETTE, pose, zoom).map(Into::into)
 }
 
-/// Gives the palette these wells.
+/// Replaces the wells of the palette.
 pub(crate) fn lay_wells(wells: Vec<Well>) -> Result<Command, ValueError> {
     Wells::new(PALETTE, wells).map(Into::into)
 }

@@ -22,15 +22,16 @@ use maulstick_optics::colour::srgb_encode;
 use maulstick_ui_kit::arrow_keys::arrow_steps;
 use maulstick_ui_kit::rows::{Number, Sliders};
 
+use frame::PictureFrame;
+use picture::{Picture, Pinned};
+use settings::FrameOpacity;
+
 use crate::dialogs::paths;
 use crate::input::keys::Action;
 use crate::matching::picker::{Ask, Picker, of_palette};
 use crate::matching::proposals::{hex, matches, swatch};
 use crate::settings::preferences::Preferences;
 use crate::widgets::context::PanelContext;
-use frame::PictureFrame;
-use picture::{Picture, Pinned};
-use settings::FrameOpacity;
 
 /// The least size of the frame, points.
 const LEAST: [f32; 2] = [220.0, 180.0];

@@ -14,6 +14,10 @@ use maulstick_rig::Stop;
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 use maulstick_types::{Origin, name_hash};
 
+use maulstick_client::frames::tiles::Wanted;
+use maulstick_client::frames::{FrameInbox, FrameSource, pull};
+use maulstick_client::state::RigEvent;
+
 use crate::render::backdrop::Backdrop;
 use crate::render::brush::renderer::{Below, BrushRenderer};
 use crate::render::frame_reports::{Completion, Holding};
@@ -25,9 +29,6 @@ use crate::rig::state::RigState;
 use crate::tracing::projection::{Projector, Slide};
 use crate::view::camera::View;
 use crate::view::visible_tiles::wanted_by;
-use maulstick_client::frames::tiles::Wanted;
-use maulstick_client::frames::{FrameInbox, FrameSource, pull};
-use maulstick_client::state::RigEvent;
 
 /// Shortest time between two drawings of the window for frames and samples, of which a device sends up to 1,000 a
 /// second; longer if the processor draws, for the paint needs it too.

@@ -6,13 +6,14 @@ use maulstick_optics::gamut::Gamut;
 use maulstick_optics::light::Lamp;
 use maulstick_types::scene::Surface;
 
+use maulstick_client::frames::Shown;
+use maulstick_client::frames::tile_planner::Part;
+
 use crate::render::gpu::Gpu;
 use crate::render::light_surface::LightSurface;
 use crate::render::show_surface::{PixelRect, Place, Region, ShowSurface};
 use crate::render::tile_atlas::TileAtlas;
 use crate::view::camera::View;
-use maulstick_client::frames::Shown;
-use maulstick_client::frames::tile_planner::Part;
 
 /// The passes that a surface goes through.
 #[derive(Debug)]

@@ -10,8 +10,9 @@ use maulstick_types::stylus::StylusStatus;
 use maulstick_types::wire::topics::Topics;
 use maulstick_ui_kit::notifications::Notifications;
 
-use crate::rig::state::RigState;
 use maulstick_client::state::RigEvent;
+
+use crate::rig::state::RigState;
 
 /// The node of the painting.
 const PAINT: &str = "paint";

@@ -1,4 +1,4 @@
-//! Recordings beside the painting that a window before this one was cut off from: completed, and offered once.
+//! Recordings beside the painting that a window before this one was cut off from: completed, and reported once.
 
 use std::path::{Path, PathBuf};
 use std::task::Poll;
@@ -10,12 +10,15 @@ use maulstick_ui_kit::notifications::Notifications;
 
 use crate::dialogs::paths;
 
+/// Recordings of a folder that were cut off, each whole or with what keeps it from being completed.
+type Found = Result<Vec<Result<CutOff, RecorderError>>, RecorderError>;
+
 /// Completion of the recordings in the folder of the painting.
 #[derive(Debug, Default)]
 pub(super) struct CutOffRecordings {
     /// The folder that was looked through.
     folder: PathBuf,
-    task: Option<BackgroundTask<Result<Vec<CutOff>, RecorderError>>>,
+    task: Option<BackgroundTask<Found>>,
 }
 
 impl CutOffRecordings {
@@ -39,9 +42,10 @@ impl CutOffRecordings {
         };
         self.task = None;
         match found {
-            Some(Ok(found)) => found
-                .iter()
-                .for_each(|cut| notify(&cut.file, notifications)),
+            Some(Ok(found)) => found.iter().for_each(|found| match found {
+                Ok(cut) => notify(&cut.file, notifications),
+                Err(error) => tracing::warn!("a recording beside the painting: {error}"),
+            }),
             Some(Err(error)) => tracing::warn!("recordings beside the painting: {error}"),
             None => {}
         }

@@ -13,13 +13,14 @@ use maulstick_recorder::{
 };
 use maulstick_ui_kit::notifications::Severity;
 
+use overlay_bench::{Bench, ctrl, press, until, window};
+
 use super::*;
 use crate::sessions::progress::RecordingProgress;
 use crate::sessions::progress::ReplayProgress;
 use crate::sessions::recorder::{notify, place};
 use crate::sessions::transport_bar::TransportBar;
 use crate::test_support::{context_bench, overlay_bench, panel_bench};
-use overlay_bench::{Bench, ctrl, press, until, window};
 
 /// A recording in progress.
 pub(crate) fn recording() -> RecordingProgress {
@@ -84,7 +85,7 @@ impl Desk {
 }
 
 #[test]
-fn a_recording_that_ended_early_is_offered_once() {
+fn a_recording_that_ended_early_is_reported_once() {
     let mut desk = Desk::new("Sea.maul");
     let file = desk.folder.path().join("Sea.mcap");
     let whole = std::fs::File::create(&file).expect("created");

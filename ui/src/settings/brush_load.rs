@@ -167,8 +167,16 @@ mod tests {
             let fault = loading(paint, None, 0.0).command("main", &library());
             fault.expect_err(paint)
         };
-        for wrong in ["Colbat Blue", "Cobalt Blue=0", ""] {
-            assert!(error(wrong).help.is_some(), "{wrong}");
+        for (wrong, quoted) in [
+            ("Colbat Blue", "'Cobalt Blue'"),
+            ("Cobalt Blue=0", "'0'"),
+            ("", ""),
+        ] {
+            let fault = error(wrong);
+            assert!(
+                fault.help.is_some() && fault.to_string().contains(quoted),
+                "{fault}"
+            );
         }
         let beside = loading("Cobalt Blue", Some("x=1"), f64::NAN);
         assert!(beside.command("main", &library()).is_err());

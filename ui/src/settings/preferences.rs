@@ -11,6 +11,8 @@ use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
 use maulstick_ui_kit::units::Units;
 
+use maulstick_window_pen::mouse::grip::Grip;
+
 use crate::input::keymap::Keymap;
 use crate::reference::settings::ReferencePreferences;
 use crate::settings::brush_load::BrushLoad;
@@ -19,7 +21,6 @@ use crate::settings::paint_sets::PaintSet;
 use crate::settings::presets::{BeforePreset, Preset, classic};
 use crate::settings::window_side::WindowSide;
 use crate::tracing::settings::Tracings;
-use maulstick_window_pen::mouse::grip::Grip;
 
 /// Recent paintings that are remembered.
 const RECENT: usize = 12;

@@ -15,9 +15,10 @@ use maulstick_ui_kit::language::translated;
 use maulstick_ui_kit::rows::cell;
 use maulstick_ui_kit::units::Units;
 
+use key_rows::KeyRows;
+
 use crate::settings::look::{TEXT_SIZES, Theme};
 use crate::widgets::context::PanelContext;
-use key_rows::KeyRows;
 
 /// Width of the dialog, points.
 const WIDTH: f32 = 460.0;

@@ -10,12 +10,13 @@ use maulstick_painting::PaintingSetup;
 use maulstick_types::command::Command;
 use maulstick_ui_kit::notifications::Notifications;
 
+use maulstick_client::request::Request;
+
 use crate::panels::Panel;
 use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::widgets::context::PanelContext;
-use maulstick_client::request::Request;
 
 /// A rig with a new painting and two brushes, of which the first is the library's round one.
 pub(crate) fn rig() -> RigState {

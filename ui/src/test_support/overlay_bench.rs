@@ -11,14 +11,15 @@ use maulstick_rig::UserError;
 use maulstick_types::command::{Command, Detail};
 use maulstick_ui_kit::notifications::Notifications;
 
+use maulstick_client::dispatcher::{Outcome, RequestError};
+use maulstick_client::request::Request;
+
 use crate::app::overlay::Overlay;
 use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::test_support::panel_bench::rig;
 use crate::widgets::context::PanelContext;
-use maulstick_client::dispatcher::{Outcome, RequestError};
-use maulstick_client::request::Request;
 
 /// Longest wait for background work before a test fails.
 const PATIENCE: Duration = Duration::from_secs(60);

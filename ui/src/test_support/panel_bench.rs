@@ -11,13 +11,14 @@ use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
 use maulstick_ui_kit::notifications::Notifications;
 
+use maulstick_client::request::Request;
+use maulstick_client::state::PaintNode;
+
 use crate::panels::Panel;
 use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::widgets::context::PanelContext;
-use maulstick_client::request::Request;
-use maulstick_client::state::PaintNode;
 
 /// Width of the column of panels, points.
 const COLUMN: f32 = 300.0;

@@ -17,10 +17,11 @@ use eframe::egui::Context;
 use maulstick_exchange::ImportError;
 use maulstick_ui_kit::background_task::BackgroundTask;
 
-use crate::reference::picture::{Picture, unread};
-use crate::widgets::context::PanelContext;
 use projection::Slide;
 use settings::Tracing;
+
+use crate::reference::picture::{Picture, unread};
+use crate::widgets::context::PanelContext;
 
 /// A tracing picture while it loads.
 #[derive(Debug, Default)]

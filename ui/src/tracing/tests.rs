@@ -6,6 +6,8 @@ use std::time::Duration;
 use eframe::egui_wgpu::wgpu;
 use maulstick_ui_kit::notifications::Notifications;
 
+use maulstick_client::state::PaintNode;
+
 use super::projection::Projector;
 use super::*;
 use crate::render::gpu::testing::{draw, gpu, read, target};
@@ -14,7 +16,6 @@ use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::test_support::panel_bench::{rig, status};
-use maulstick_client::state::PaintNode;
 
 /// Left half black, right half white, twice as high as wide.
 fn halves() -> Arc<Slide> {

@@ -8,10 +8,11 @@ use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::Light;
 
+use maulstick_client::request::Peer;
+
 use crate::panels::desk_edits;
 use crate::rig::state::RigState;
 use crate::widgets::context::PanelContext;
-use maulstick_client::request::Peer;
 
 /// Duration up to which work is not shown, ns.
 const SHORT_NS: u64 = 500_000_000;

@@ -10,10 +10,11 @@ use maulstick_types::paint::BrushCredit;
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin};
 
+use progress::Progress;
+
 use super::solver::Solved;
 use crate::outbox::Outbox;
 use crate::path_simplifier::PathSimplifier;
-use progress::Progress;
 
 /// Age of the oldest unpainted state from which a live brush merges its samples, ns.
 const OLDEST_NS: u64 = 50_000_000;

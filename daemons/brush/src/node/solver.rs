@@ -14,10 +14,11 @@ use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::scene::Scene;
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
-use super::settings::BrushSettings;
-use crate::path_simplifier::{PathSimplifier, Place, Start, Waiting};
 use haste::Haste;
 use pace::Pace;
+
+use super::settings::BrushSettings;
+use crate::path_simplifier::{PathSimplifier, Place, Start, Waiting};
 
 /// Solves of a turn at most, but for those of its last sample: the node reads what arrives meanwhile.
 const SOLVES_A_TURN: usize = 256;

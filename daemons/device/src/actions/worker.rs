@@ -18,8 +18,9 @@ use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Edit, Pose};
 use serde_json::json;
 
-use super::{Action, Edge, SwitchEvent};
 use maulstick_rig::command_client::CommandClient;
+
+use super::{Action, Edge, SwitchEvent};
 
 /// Longest wait for a command.
 const PATIENCE: Duration = Duration::from_secs(2);

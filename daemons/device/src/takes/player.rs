@@ -17,8 +17,9 @@ use maulstick_types::stylus::{StylusInfo, StylusSample, TakeEnd, TakeStatus, axe
 use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Mixture, Origin, name_hash};
 
-use crate::take::Take;
 use maulstick_rig::command_client::CommandClient;
+
+use crate::take::Take;
 
 /// Playback rate of a take.
 #[derive(Clone, Copy, Debug, PartialEq)]

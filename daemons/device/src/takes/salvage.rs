@@ -15,10 +15,11 @@ use maulstick_types::stylus::StylusSample;
 use mcap::MAGIC;
 use mcap::records::{MessageHeader, Record, op};
 
-use crate::take::{Take, TakeSample};
-use crate::take_setup::TakeSetup;
 use maulstick_streams::json_channel;
 use maulstick_streams::mcap_records::{Found, HEAD, records, unpack};
+
+use crate::take::{Take, TakeSample};
+use crate::take_setup::TakeSetup;
 
 /// Name of a device whose channel record is lost.
 const UNNAMED: &str = "recovered";

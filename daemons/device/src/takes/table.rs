@@ -16,8 +16,9 @@ use maulstick_rig::table_file::{MOST_BYTES, read_table};
 use maulstick_types::limits::FARTHEST_M;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
 
-use crate::take::{Take, TakeSample};
 use columns::Row;
+
+use crate::take::{Take, TakeSample};
 pub use note::Note;
 
 /// Median times between samples of a stroke from which a unit of time is guessed, s: pens report 10 to 500

@@ -101,8 +101,7 @@ mod tests {
     use maulstick_types::{HEADER_BYTES, Header};
 
     use super::*;
-    use crate::salvage::salvage;
-    use crate::salvage::{Refusal, from_bytes};
+    use crate::salvage::{Refusal, from_bytes, salvage};
 
     fn take() -> Take {
         let sample = |i: u64| TakeSample {

@@ -27,9 +27,10 @@ use hidreport::{Field, Report, ReportDescriptor};
 use maulstick_num::{atan2, sin_cos};
 use maulstick_types::stylus::axes;
 
+use maulstick_device::pen::{End, Presence, Reading, STEEPEST_RAD};
+
 use crate::descriptor::{lies_in, page, pair};
 use crate::reports::number::Number;
-use maulstick_device::pen::{End, Presence, Reading, STEEPEST_RAD};
 
 /// Counts a metre of a tablet that does not say, 5080 an inch.
 pub(crate) const COUNTS_M: f64 = 200_000.0;

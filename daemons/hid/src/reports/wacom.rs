@@ -6,8 +6,9 @@
 
 use maulstick_types::stylus::axes;
 
-use crate::descriptor::input_bytes;
 use maulstick_device::pen::{End, Presence, Reading, STEEPEST_RAD};
+
+use crate::descriptor::input_bytes;
 
 /// Counts a metre.
 const COUNTS_M: f64 = 200_000.0;

@@ -10,10 +10,11 @@ use maulstick_painting::Sequencer;
 use maulstick_types::command::{CommandRequest, FileCommand, Outcome};
 use maulstick_types::paint::ExportStatus;
 
+use document_home::DocumentHome;
+
 use crate::exporter::{Asker, Exporter};
 use crate::refusal::Refusal;
 use crate::snapshots::{Snapshot, Snapshots};
-use document_home::DocumentHome;
 
 /// The document, and pictures that are written beside the painting.
 #[derive(Debug, Default)]

@@ -25,8 +25,6 @@ use maulstick_types::node::NodeWork;
 use maulstick_types::paint::Decision;
 use maulstick_types::wire::topics::Topics;
 
-use crate::frames::Feed;
-use crate::thumbnails::Thumbnails;
 use brush_files::BrushFiles;
 use drying_clock::DryingClock;
 use files::Files;
@@ -35,6 +33,9 @@ use inputs::{Inputs, NextState};
 use outputs::Outputs;
 use proposal::Proposal;
 use session::RepeatedSession;
+
+use crate::frames::Feed;
+use crate::thumbnails::Thumbnails;
 
 /// States consumed in one turn before commands and frames have theirs.
 const STATES_A_TURN: usize = 16;

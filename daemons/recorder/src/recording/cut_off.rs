@@ -21,26 +21,27 @@ pub struct CutOff {
     pub messages: u64,
 }
 
-/// Completes the recordings of a folder that were cut off; those that are being written stay as they are, and so does
-/// what no recorder has written.
+/// Completes the recordings of a folder that were cut off, in the order of their names; those that are being written
+/// stay as they are, and so does what no recorder has written. One that cannot be completed is an error of its own.
 ///
 /// # Errors
-/// A [`RecorderError`] where the folder cannot be read, or a recording cannot be completed.
-pub fn complete_in(folder: &Path) -> Result<Vec<CutOff>, RecorderError> {
+/// A [`RecorderError`] where the folder cannot be read.
+pub fn complete_in(folder: &Path) -> Result<Vec<Result<CutOff, RecorderError>>, RecorderError> {
     let reading = |error: Error| UserError::reading(folder, &error);
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(reading)? {
-        let path = entry.map_err(reading)?.path();
-        if path.extension().is_some_and(|ending| ending == ENDING) {
-            found.extend(complete(&path)?);
-        }
-    }
-    found.sort_by(|one, other| one.file.cmp(&other.file));
-    Ok(found)
+    let entries = std::fs::read_dir(folder).map_err(reading)?;
+    let paths = entries.map(|entry| Ok(entry.map_err(reading)?.path()));
+    let mut paths: Vec<PathBuf> = paths.collect::<Result<_, UserError>>()?;
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == ENDING));
+    paths.sort();
+    Ok(paths
+        .iter()
+        .filter_map(|path| complete(path).transpose())
+        .collect())
 }
 
 fn complete(path: &Path) -> Result<Option<CutOff>, RecorderError> {
-    let Some(_locked) = cut_off(path).unwrap_or_default() else {
+    let locked = cut_off(path).map_err(|error| UserError::reading(path, &error))?;
+    let Some(_locked) = locked else {
         return Ok(None);
     };
     let recording = DamagedRecording::open(path)?;
@@ -63,6 +64,9 @@ fn complete(path: &Path) -> Result<Option<CutOff>, RecorderError> {
 fn cut_off(path: &Path) -> std::io::Result<Option<File>> {
     let mut file = File::open(path)?;
     if file.try_lock().is_err() {
+        return Ok(None);
+    }
+    if file.metadata()?.len() < MAGIC.len() as u64 {
         return Ok(None);
     }
     let ends = [SeekFrom::Start(0), SeekFrom::End(-(MAGIC.len() as i64))].map(|at| {
@@ -131,11 +135,16 @@ mod tests {
             file: path("cut.mcap"),
             messages: 10,
         };
-        assert_eq!(complete_in(folder.path()), Ok(vec![cut.clone()]));
+        assert_eq!(complete_in(folder.path()), Ok(vec![Ok(cut.clone())]));
         let recording = Recording::open(&cut.file).expect("a recording");
         assert!(recording.notes().contains_key("recovered"));
         assert_eq!(recording.damage(), None);
         assert_eq!(others.map(bytes), before);
         assert_eq!(complete_in(folder.path()), Ok(vec![]), "it is whole");
+
+        record(&path("cut.mcap"), &["recording"], false);
+        std::fs::create_dir(path("a.mcap")).expect("made");
+        let found = complete_in(folder.path()).expect("read");
+        assert!(matches!(&found[..], [Err(_), Ok(found)] if *found == cut));
     }
 }

@@ -119,7 +119,7 @@ impl JournalWatch {
         (is_missing || lacks_states).then_some(Break::Gap)
     }
 
-    /// Adds that an entry names states; true where some of them are known to be missing.
+    /// Notes the states that an entry names; true where some of them are known to be missing.
     fn names(&mut self, brush: Brush, [from, to]: [u64; 2]) -> bool {
         let Some(states) = self.brushes.get_mut(&brush).filter(|_| from <= to) else {
             return false;

@@ -10,10 +10,11 @@ use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::{Light, Scene};
 use serde_json::json;
 
+use maulstick_painting_setup::lamp::changed;
+
 use crate::commands::client::{Client, Feed, Target};
 use crate::commands::print_json;
 use crate::commands::say;
-use maulstick_painting_setup::lamp::changed;
 
 /// Options of `maulstick canvas light`; absent ones are unchanged.
 #[derive(Args, Clone, Debug)]

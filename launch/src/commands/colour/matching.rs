@@ -9,10 +9,11 @@ use maulstick_optics::{Paint, PaintLibrary, Viewing};
 use maulstick_rig::UserError;
 use serde_json::{Value, json};
 
-use crate::commands::{print_json, print_text};
-use crate::swatch::{Terminal, hex};
 use maulstick_painting_setup::viewing::ViewingOptions;
 use maulstick_painting_setup::{library_from, refused};
+
+use crate::commands::{print_json, print_text};
+use crate::swatch::{Terminal, hex};
 
 /// Options of `maulstick colour match`.
 #[derive(Args, Clone, Debug)]

@@ -8,11 +8,12 @@ use maulstick_optics::{Blend, Coat, Layer, PaintLibrary, Seen, Spectrum};
 use maulstick_rig::UserError;
 use serde_json::json;
 
+use maulstick_painting_setup::viewing::ViewingOptions;
+use maulstick_painting_setup::{library_from, mixture_of};
+
 use crate::commands::option_error::{OptionError, number_within};
 use crate::commands::{print_json, print_text};
 use crate::swatch::{Terminal, in_words, sparkline};
-use maulstick_painting_setup::viewing::ViewingOptions;
-use maulstick_painting_setup::{library_from, mixture_of};
 
 /// Options of `maulstick colour mix`.
 #[derive(Args, Clone, Debug)]

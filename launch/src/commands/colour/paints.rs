@@ -7,9 +7,10 @@ use maulstick_optics::{Blend, Coat, Paint, PaintLibrary, RuleKind, StudioSetting
 use maulstick_rig::UserError;
 use serde_json::json;
 
+use maulstick_painting_setup::library_from;
+
 use crate::commands::{print_json, print_text};
 use crate::swatch::{Terminal, hex};
-use maulstick_painting_setup::library_from;
 
 /// Options of `maulstick colour paints`.
 #[derive(Args, Clone, Debug)]

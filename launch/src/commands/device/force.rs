@@ -16,12 +16,13 @@ use maulstick_rig::files::Kind;
 use maulstick_types::haptics::{ContactModel, ForceLaw};
 use serde_json::json;
 
+use maulstick_painting_setup::brush_file;
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
+
 use crate::commands::force_order::{Order, give};
 use crate::commands::option_error::{OptionError, number_within};
 use crate::commands::{print_text, write_picture};
 use crate::plot::{Axis, Curve, Panel, from_zero, plot};
-use maulstick_painting_setup::brush_file;
-use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// A law of force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -32,7 +32,7 @@ pub enum Order {
     },
     /// Give a share of the guides' force
     Guidance {
-        /// Share of the force: 60% or 0.6
+        /// Share of the guides' force: 60% or 0.6
         #[arg(value_parser = share)]
         share: f64,
         /// Of which devices

@@ -8,11 +8,12 @@ use maulstick_rig::{UserError, whole_path};
 use maulstick_types::command::{NewCanvas, RigCommand};
 use maulstick_types::values::MaterialName;
 
+use maulstick_painting_setup::cells::check_speed;
+
 use crate::commands::client::{Client, Target};
 use crate::commands::open::LONGEST;
 use crate::commands::option_error::{OptionError, sides};
 use crate::commands::say;
-use maulstick_painting_setup::cells::check_speed;
 
 /// Options of `maulstick painting new`.
 #[derive(Args, Clone, Debug)]

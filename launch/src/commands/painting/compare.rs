@@ -14,10 +14,11 @@ use maulstick_types::scene::CANVAS;
 use maulstick_types::values::VersionName;
 use serde_json::json;
 
-use crate::commands::{print_json, say, write_picture};
 use maulstick_painting_setup::document::{read, wrong};
 use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 use maulstick_painting_setup::refused;
+
+use crate::commands::{print_json, say, write_picture};
 
 /// Bytes of a cell in two pictures, and in the one that has both and their difference.
 const PIXEL_BYTES: u64 = 5 * 3;

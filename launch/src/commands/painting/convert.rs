@@ -16,9 +16,10 @@ use maulstick_session::Autosave;
 use maulstick_types::scene::{CANVAS, PALETTE};
 use maulstick_types::values::ModelName;
 
-use crate::commands::say;
 use maulstick_painting_setup::document::{copy_closed, go_on, read, wrong};
 use maulstick_painting_setup::refused;
+
+use crate::commands::say;
 
 /// Options of `maulstick painting convert`.
 #[derive(Args, Clone, Debug)]

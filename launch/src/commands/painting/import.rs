@@ -12,11 +12,12 @@ use maulstick_session::Autosave;
 use maulstick_types::scene::{CANVAS, WellKind};
 use maulstick_types::values::MaterialName;
 
-use crate::commands::{progress, progress_bar, say};
 use maulstick_painting_setup::document::{go_on, there, wrong};
 use maulstick_painting_setup::refused;
 use maulstick_painting_setup::surface::picture::{no_picture, open_picture};
 use maulstick_painting_setup::surface::tooth::{DEPTH, ToothPicture};
+
+use crate::commands::{progress, progress_bar, say};
 
 /// A mean ΔE₀₀ beyond which a picture is another one.
 const FAR: f64 = 15.0;

@@ -12,10 +12,11 @@ use maulstick_session::{LoggedWhat, painting_log};
 use maulstick_types::scene::{Layer, Surface};
 use serde_json::{Value, json};
 
-use super::wall_time::{utc, utc_seconds};
-use crate::commands::{print_json, progress, progress_bar, say};
 use maulstick_painting_setup::document::{read, wrong};
 use maulstick_painting_setup::refused;
+
+use super::wall_time::{utc, utc_seconds};
+use crate::commands::{print_json, progress, progress_bar, say};
 
 /// Options of `maulstick painting info`.
 #[derive(Args, Clone, Debug)]

@@ -9,12 +9,13 @@ use maulstick_session::{Logged, LoggedWhat, painting_log};
 use maulstick_types::plain;
 use serde_json::{Value, json};
 
+use maulstick_painting_setup::document::{read, wrong};
+
 use super::log_words::{Names, words};
 use super::timelapse::no_record;
 use super::wall_time::{utc, utc_seconds};
 use crate::commands::table::table;
 use crate::commands::{print_json, print_text};
-use maulstick_painting_setup::document::{read, wrong};
 
 /// Greatest length of a line of the log, characters, except for JSON.
 const LINE: usize = 160;

@@ -7,8 +7,9 @@ use maulstick_document::pack::{Forget, pack};
 use maulstick_rig::UserError;
 use maulstick_rig::size::show_bytes;
 
-use crate::commands::{progress, progress_bar, say};
 use maulstick_painting_setup::document::wrong;
+
+use crate::commands::{progress, progress_bar, say};
 
 /// Options of `maulstick painting pack`.
 #[derive(Args, Clone, Debug)]

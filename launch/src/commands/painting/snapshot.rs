@@ -8,10 +8,11 @@ use maulstick_rig::files::Kind;
 use maulstick_types::command::TakeCommand;
 use serde_json::json;
 
+use maulstick_painting_setup::outputs::{Relayed, UsedFile, check_outputs};
+
 use crate::commands::client::{Client, Target};
 use crate::commands::open::LONGEST;
 use crate::commands::{print_json_line, say};
-use maulstick_painting_setup::outputs::{Relayed, UsedFile, check_outputs};
 
 /// Options of `maulstick snapshot`.
 #[derive(Args, Clone, Debug)]

@@ -11,10 +11,11 @@ use maulstick_types::scene::{NamedVersion, Scene};
 use maulstick_types::values::VersionName;
 use serde_json::json;
 
-use crate::commands::client::{Client, Target};
-use crate::commands::{print_json, say};
 use maulstick_painting_setup::document::{go_on, there, wrong};
 use maulstick_painting_setup::refused;
+
+use crate::commands::client::{Client, Target};
+use crate::commands::{print_json, say};
 
 use super::compare::compare;
 

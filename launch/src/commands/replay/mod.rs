@@ -17,11 +17,12 @@ use maulstick_recorder::{GuideSettings, Player, ReplaySettings, TakePlace};
 use maulstick_rig::UserError;
 use tokio::runtime::Handle;
 
+use maulstick_tool_options::motion::{HeadOptions, parse_place};
+
 use self::orders::{Orders, parse_rate, parse_strength};
 use self::reports::Reports;
 use crate::commands::client::Target;
 use crate::runtime::{EndSignals, block_on, exit_code};
-use maulstick_tool_options::motion::{HeadOptions, parse_place};
 
 /// Options of `maulstick recording replay`.
 #[derive(Args, Clone, Debug)]

@@ -10,10 +10,11 @@ use maulstick_recorder::Listener;
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, ending, write_whole};
 
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
+
 use super::measure::duration;
 use crate::commands::client::Target;
 use crate::commands::{print_json, print_text};
-use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick topic graph`.
 #[derive(Args, Clone, Debug)]

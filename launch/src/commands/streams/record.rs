@@ -10,10 +10,11 @@ use maulstick_rig::files::Kind;
 use maulstick_rig::log::print_beside;
 use tokio::runtime::Handle;
 
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
+
 use super::recorder_words::LogFormat;
 use crate::commands::client::Target;
 use crate::runtime::{EndSignals, block_on};
-use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick recording record`.
 #[derive(Args, Clone, Debug)]

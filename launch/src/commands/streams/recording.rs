@@ -12,13 +12,14 @@ use maulstick_streams::recording_writer::MESSAGE_ENCODING;
 use maulstick_streams::topic_pattern::matches;
 use maulstick_streams::{Recording, Value};
 
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
+
 use super::foxglove_export;
 use super::message_lines::{MessageLine, decoded, head};
 use super::record::{self, RecordOptions};
 use super::recording_info::info;
 use crate::commands::replay::{self, ReplayOptions};
 use crate::commands::say;
-use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Subcommands of `maulstick recording`.
 #[derive(Subcommand, Clone, Debug)]

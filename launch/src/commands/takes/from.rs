@@ -17,11 +17,12 @@ use maulstick_streams::recording::Topic;
 use maulstick_streams::topic_pattern::{matches, parts};
 use maulstick_types::paint::Entry;
 
+use maulstick_painting_setup::document::wrong;
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
+
 use super::painting_record::PaintingRecord;
 use super::take_writer::{TakeOrigin, TakeWriter};
 use crate::commands::say;
-use maulstick_painting_setup::document::wrong;
-use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick take from`.
 #[derive(Args, Clone, Debug)]

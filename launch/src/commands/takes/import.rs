@@ -7,9 +7,10 @@ use maulstick_device::table::{TableLayout, TimeUnit, import};
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 
+use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
+
 use crate::commands::option_error::{OptionError, sides};
 use crate::commands::write_take;
-use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick take import`.
 #[derive(Args, Clone, Debug)]

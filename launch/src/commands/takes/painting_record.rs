@@ -9,9 +9,10 @@ use maulstick_recorder::session_file::Event;
 use maulstick_rig::UserError;
 use maulstick_session::{WorkClock, each_record};
 
+use maulstick_painting_setup::document::{copy_closed, read, wrong};
+
 use super::take_writer::TakeOrigin;
 use crate::commands::painting::no_record;
-use maulstick_painting_setup::document::{copy_closed, read, wrong};
 
 /// A painting that has a record.
 #[derive(Debug)]

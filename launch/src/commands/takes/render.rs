@@ -16,8 +16,6 @@ use maulstick_session::{Autosave, Offline};
 use maulstick_types::Mixture;
 
 pub use super::render_options::RenderOptions;
-use super::render_session::render_session;
-use crate::commands::progress_bar;
 use maulstick_painting_setup::backend::choose_backend;
 use maulstick_painting_setup::cells::picture_settings;
 use maulstick_painting_setup::destination::export;
@@ -26,6 +24,9 @@ use maulstick_painting_setup::outputs::{UsedFile, check_apart, check_outputs, na
 use maulstick_painting_setup::{brush_file, library_from, painting_setup, refused};
 use maulstick_script::ScriptRunner;
 use maulstick_script::{Act, Script, advice};
+
+use super::render_session::render_session;
+use crate::commands::progress_bar;
 
 impl RenderOptions {
     /// The files that are read, except those named by the script.

@@ -8,13 +8,14 @@ use maulstick_recorder::session_file::{Event, PAINTING, SessionFile};
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::{Autosave, RecordedSession};
 
-use super::from::Counts;
-use super::render_options::RenderOptions;
-use crate::commands::{progress_bar, say};
 use maulstick_painting_setup::backend::choose_backend;
 use maulstick_painting_setup::destination::export;
 use maulstick_painting_setup::document::{Presence, presence, wrong};
 use maulstick_painting_setup::{KitOptions, refused};
+
+use super::from::Counts;
+use super::render_options::RenderOptions;
+use crate::commands::{progress_bar, say};
 
 /// Paints a session.
 ///

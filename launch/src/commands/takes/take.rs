@@ -18,15 +18,16 @@ use maulstick_types::stylus::StylusPose;
 use mcap::McapError;
 use serde_json::json;
 
-use super::from::{self, FromOptions};
-use super::import::{self, ImportOptions};
-use super::render::{self, RenderOptions};
-use crate::commands::{print_json, say, write_take};
 use maulstick_painting_setup::cells::picture_settings;
 use maulstick_painting_setup::document::wrong;
 use maulstick_painting_setup::outputs::{UsedFile, check_outputs, named_by};
 use maulstick_painting_setup::take_setup::take_setup;
 use maulstick_painting_setup::{KitOptions, library_from, painting_setup, refused};
+
+use super::from::{self, FromOptions};
+use super::import::{self, ImportOptions};
+use super::render::{self, RenderOptions};
+use crate::commands::{print_json, say, write_take};
 
 /// Topics of the hands.
 const HANDS: &str = "stylus/*/sample";

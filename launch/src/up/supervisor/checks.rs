@@ -14,12 +14,13 @@ use maulstick_types::Mixture;
 use maulstick_types::command::{FileCommand, NewCanvas, SaveAs};
 use tokio::task::spawn_blocking;
 
-use super::sketch;
-use super::switch::{Asker, Plan, SwitchEvent};
-use crate::up::first_load;
 use maulstick_painting_setup::cells::check_memory;
 use maulstick_painting_setup::document::{measure, read, round, wrong};
 use maulstick_painting_setup::{library_from, painting_setup, refused};
+
+use super::sketch;
+use super::switch::{Asker, Plan, SwitchEvent};
+use crate::up::first_load;
 
 /// A painting is in another file within this time.
 const SAVE_TIME: std::time::Duration = std::time::Duration::from_secs(3600);

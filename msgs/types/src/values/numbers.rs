@@ -240,12 +240,12 @@ impl Default for Share {
 
 impl FilmThickness {
     /// Default thickness of a film, 50 µm.
-    pub const USUAL: Self = Self(50.0 * 1e-6);
+    pub const DEFAULT: Self = Self(50.0 * 1e-6);
 }
 
 impl Default for FilmThickness {
     fn default() -> Self {
-        Self::USUAL
+        Self::DEFAULT
     }
 }
 
@@ -268,8 +268,8 @@ mod tests {
         assert!(Share::new(0.0).is_err() && Share::new(f32::MIN_POSITIVE).is_ok());
         assert!(Share::new(f32::NAN).is_err() && Share::new(1.0).is_ok());
         assert_eq!(
-            FilmThickness::USUAL,
-            FilmThickness::in_unit(50.0).expect("usual")
+            FilmThickness::DEFAULT,
+            FilmThickness::in_unit(50.0).expect("in range")
         );
     }
 

@@ -16,7 +16,7 @@ pub trait Quantity {
     const NAME: &'static str;
     /// Its values, in a painter's unit; from the least number above 0 where 0 is excluded.
     const RANGE: RangeInclusive<f64>;
-    /// The part of the range that a slider spans.
+    /// The part of the range that is painted with: a slider spans it.
     const USUAL: RangeInclusive<f64> = Self::RANGE;
     /// The unit as it stands behind a number; empty for none.
     const UNIT: &'static str = "";

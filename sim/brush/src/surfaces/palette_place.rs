@@ -120,20 +120,6 @@ pub fn mirrored(wells: &[Well], size: DVec2) -> Vec<Well> {
     wells.iter().map(mirror).collect()
 }
 
-/// The canvas at its initial place: unzoomed, its middle at the desk's origin.
-#[must_use]
-pub fn canvas_at_rest(canvas: &Surface) -> Surface {
-    let size = size_m(canvas);
-    Surface {
-        zoom: 1.0,
-        pose: Pose {
-            position_m: [-0.5 * size.x, -0.5 * size.y, 0.0],
-            ..Pose::IDENTITY
-        },
-        ..canvas.clone()
-    }
-}
-
 /// True if the palette is nearer to its place over the canvas than to the one beside it.
 #[must_use]
 pub fn is_out(canvas: &Surface, palette: &Surface, side: Side) -> bool {

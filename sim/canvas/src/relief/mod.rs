@@ -9,10 +9,11 @@ mod weave;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::planes::TILE_CELLS;
-use crate::tile::TileId;
 use tooth::Tooth;
 use tooth_picture::PictureTooth;
+
+use crate::planes::TILE_CELLS;
+use crate::tile::TileId;
 
 /// Greatest number of tiles with cached heights.
 const CACHED_TILES_MAX: usize = 1024;

@@ -18,6 +18,10 @@ use maulstick_canvas::page::Page;
 use maulstick_canvas::planes::Planes;
 use maulstick_painting::sequencer::Record;
 
+use failures::{Part, Retry};
+use queues::{EndGuard, Life, Queues, Shared};
+use reading::yield_to_readers;
+
 use crate::checkpoint::Checkpoint;
 use crate::error::DocumentError;
 use crate::file::database::Database;
@@ -26,9 +30,6 @@ use crate::file::watch::FileWatch;
 use crate::journal;
 use crate::record;
 use crate::writing::{ShownTile, Stored, Trust, Writer};
-use failures::{Part, Retry};
-use queues::{EndGuard, Life, Queues, Shared};
-use reading::yield_to_readers;
 
 /// Longest time until an accepted record is in the file.
 const COMMIT_PERIOD: Duration = Duration::from_millis(100);

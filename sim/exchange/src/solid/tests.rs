@@ -17,10 +17,11 @@ use maulstick_canvas::tile::{Tile, Version};
 use maulstick_optics::{PaintLibrary, Studio};
 use maulstick_types::paint::TILE;
 
-use super::*;
 use maulstick_stokes_paint::layer_planes::shape_of;
 use maulstick_stokes_paint::layers::Layers;
 use maulstick_stokes_paint::overhangs::Overhangs;
+
+use super::*;
 
 const CELL_M: f64 = 2.5e-4;
 /// Quanta of a voxel: 2⁻²⁴ of 25 mm each.

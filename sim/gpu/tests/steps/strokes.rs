@@ -14,7 +14,7 @@ use crate::easel::{Easel, all, lifted, mixture, paint, stroke, volume};
 /// True if the paintings of two backends agree, given the amount before.
 pub(crate) type Agree<'a> = &'a dyn Fn(&mut Painting, &mut Painting, u64) -> bool;
 
-/// Whoever looks at the painting meanwhile, and however often: the same bytes, after so many of 60 states of a stroke.
+/// The same bytes after a part of the 60 states of a stroke, whoever looks at the painting meanwhile.
 pub(crate) fn have_the_same_bytes(easel: Easel<'_>, painted: usize) {
     let mut once = easel(Some(device()));
     let mut looked_at = easel(Some(device()));

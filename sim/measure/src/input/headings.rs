@@ -1,9 +1,10 @@
 //! Columns of a table of measurements.
 
+use maulstick_optics::paints::check_paint_name;
+
 use crate::error::MeasureError;
 use crate::table::Table;
 use crate::warning::Warning;
-use maulstick_optics::paints::check_paint_name;
 
 /// Columns that are neither a paint nor a wavelength.
 pub const RESERVED: [&str; 4] = ["sample", "kind", "thickness_um", "over"];

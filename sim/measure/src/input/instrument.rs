@@ -137,6 +137,8 @@ fn mean(readings: &[Reading], kind: Kind) -> Option<(usize, Vec<f64>)> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use crate::measurements::Measurements;
 
     const REFLECTANCES: &str = "kind,White,Black,400,500,600\n\
@@ -180,15 +182,18 @@ mod tests {
             let text = format!("kind,White,400,500,600\n{rows}\nsample,1,1,1,1\n");
             Measurements::parse(&text).expect_err("bad").to_string()
         };
+        let mut faults = BTreeSet::new();
         for rows in [
             "dark,,1,1,1",
             "standard+filter,,1,1,1",
             "standard,,1,1,1\nstandard+filter,,1,1,1",
         ] {
             let text = format!("kind,White,400,500,600\n{rows}\nsample,1,1,1,1\n");
-            let place = Measurements::parse(&text).expect_err(rows).place;
-            assert_eq!((place.line, place.column), (Some(2), None), "{rows}");
+            let fault = Measurements::parse(&text).expect_err(rows);
+            assert_eq!((fault.place.line, fault.place.column), (Some(2), None));
+            faults.insert(fault.to_string());
         }
+        assert_eq!(faults.len(), 3, "each says its own: {faults:?}");
         assert_eq!(
             error("standard,,1,0,1"),
             "line 2, column 4 (500): the standard reads 0 at 500 nm"

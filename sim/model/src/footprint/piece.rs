@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// An end is soft over so many cells at least.
+/// Least width of a soft end, cells.
 const SHARP: f32 = 0.25;
 /// Length by which a strip extends past its tip, cells.
 const TIP: f32 = 0.5;
@@ -75,18 +75,20 @@ impl Line {
         let past = [begins, stops].map(|ends| if ends { 0.5 * blurred } else { 0.0 });
         // Segments of a strip share their ends: each has the columns from its first up to its last.
         let on = [past[0], past[1] + tip];
-        let (low, [below, above]) = match d[major] >= 0.0 {
-            true => (start[major], on),
-            false => (start[major] - length, [on[1], on[0]]),
+        let (low, [below, above]) = if d[major] >= 0.0 {
+            (start[major], on)
+        } else {
+            (start[major] - length, [on[1], on[0]])
         };
         let (low, high) = (low - below, low + length + above);
         let rate = 1.0 / blurred;
         let whole = [0.0, 1.0];
         let rises = [rate, (0.5 - low) * rate];
         let falls = [-rate, (high - 0.5) * rate];
-        let dwells = match begins && stops {
-            true => ((length + tip) * rate).min(1.0),
-            false => 1.0,
+        let dwells = if begins && stops {
+            ((length + tip) * rate).min(1.0)
+        } else {
+            1.0
         };
         let line = Self {
             major,
@@ -132,7 +134,7 @@ impl Line {
         self.reach() / self.cosine
     }
 
-    /// The rows that it covers on those columns, of so many.
+    /// The rows that it covers on those columns, of `rows`.
     pub(super) fn rows(&self, columns: &Range<usize>, rows: usize) -> Range<usize> {
         let across = self.across();
         let (_, first) = self.at(columns.start as f32);

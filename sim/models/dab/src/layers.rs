@@ -15,9 +15,10 @@ use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::tile::Tile;
 use maulstick_optics::colour::{srgb_decode, srgb_encode};
 
+use wet_over::{noted, wet_over, with_wet_noted};
+
 use crate::emboss::emboss;
 use crate::volume::{OPAQUE, UNIT};
-use wet_over::{noted, wet_over, with_wet_noted};
 
 /// Thickness of the film over white from which a paint's colour is taken, m: dark transparent paints are nearly black
 /// in thick films, and their mixtures would be grey.

@@ -20,14 +20,15 @@ mod weights;
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
-use crate::cie::{Illuminant, Observer};
-use crate::paints::Paint;
-use crate::rule::SamplingRule;
-use crate::spectrum::{SAMPLES, Spectrum, wavelength};
 use metric::Metric;
 use normal::Normal;
 use select::{exchange, spread};
 use weights::non_negative;
+
+use crate::cie::{Illuminant, Observer};
+use crate::paints::Paint;
+use crate::rule::SamplingRule;
+use crate::spectrum::{SAMPLES, Spectrum, wavelength};
 
 /// Rounds of weighing the worst samples more, so that none stands out.
 const ROUNDS: usize = 3;

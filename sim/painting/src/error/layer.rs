@@ -59,7 +59,7 @@ impl LayerError {
                 let known = known.iter();
                 let known = known.map(|(number, name)| format!("{number} ({name})"));
                 let known = known.collect::<Vec<_>>().join(", ");
-                Advice::say(format!("there are {known}"))
+                Advice::say(format!("choose one of: {known}"))
             }
         }
     }

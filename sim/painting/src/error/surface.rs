@@ -62,7 +62,7 @@ impl SurfaceError {
                 surface_mm: [width, height],
                 ..
             } => {
-                format!("the surface measures {width:.1}x{height:.1} mm from its lower left corner")
+                format!("the surface measures {width:.1}×{height:.1} mm from its lower left corner")
             }
             Self::NoPaintThere { .. } => "choose a place with paint, wet or dry".to_owned(),
             Self::WellBeside {

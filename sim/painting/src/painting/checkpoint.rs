@@ -56,7 +56,7 @@ impl Painting {
         }
     }
 
-    /// The painting besides its tiles, of which so many were ever painted on.
+    /// The painting besides its tiles, with the number of tiles that were ever painted on.
     fn snapshot(
         &mut self,
         loads: &BTreeMap<String, Page<BrushLoad>>,

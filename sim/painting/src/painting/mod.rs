@@ -35,14 +35,15 @@ use maulstick_types::brush::{BrushRelief, BrushState, Solve};
 use maulstick_types::paint::{Decision, StepName};
 use maulstick_types::scene::{Light, Scene};
 
+use bench::Workbench;
+use desk::Desk;
+
 use crate::brush_colour::Carried;
 use crate::clock::Clock;
 use crate::error::EditError;
 use crate::history::History;
 use crate::ledger::LedgerReport;
 use crate::setup::PaintingSetup;
-use bench::Workbench;
-use desk::Desk;
 
 /// A painting.
 pub struct Painting {

@@ -18,10 +18,11 @@ use maulstick_optics::{Paint, PaintLibrary, Spectrum, Studio, THINNER};
 use maulstick_types::Mixture;
 use maulstick_types::scene::{Light, PaintSlot, Scene, Surface, WellKind};
 
+use maulstick_models::model_called;
+
 use crate::error::EditError;
 use crate::history::materials;
 use crate::setup::relief_called;
-use maulstick_models::model_called;
 
 /// Thickness of an opaque layer, m.
 const OPAQUE_M: f64 = 0.01;

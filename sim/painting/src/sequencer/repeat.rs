@@ -1,9 +1,10 @@
 //! A recorded session accepted again, record by record, in a continued painting.
 
-use crate::error::EditError;
 use maulstick_types::Flags;
 use maulstick_types::command::{Command, TakeCommand};
 use maulstick_types::paint::{Decision, Entry};
+
+use crate::error::EditError;
 
 use super::{Accepted, Record, Sequencer};
 

@@ -2,11 +2,12 @@
 
 use maulstick_rig::UserError;
 
+use maulstick_painting::edits::Undo;
+
 use super::fault;
 use super::hand::{Easel, Took};
 use crate::report::{Report, quantile, sorted};
 use crate::thread_cpu::thread_cpu;
-use maulstick_painting::edits::Undo;
 
 const CELLS: u32 = 4096;
 const STEPS: usize = 10_000;

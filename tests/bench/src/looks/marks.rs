@@ -2,9 +2,10 @@
 
 use maulstick_rig::UserError;
 
-use super::easel::{Easel, Map, Stroke, brush, correlation, slope};
 use maulstick_painting::edits::{Fill, FillPaint};
 use maulstick_types::values::FilmThickness;
+
+use super::easel::{Easel, Map, Stroke, brush, correlation, slope};
 
 /// Name, value, unit.
 pub(crate) type Number = (&'static str, f64, &'static str);

@@ -16,8 +16,9 @@ mod tests;
 
 use maulstick_rig::UserError;
 
-use crate::report::Report;
 use marks::{Painter, Trial};
+
+use crate::report::Report;
 
 /// Side of a cell, mm.
 const CELL_MM: f64 = 0.125;

@@ -14,8 +14,9 @@ use mcap::Summary;
 use mcap::sans_io::indexed_reader::{IndexedReadEvent, IndexedReader, IndexedReaderOptions};
 use mcap::sans_io::summary_reader::{SummaryReadEvent, SummaryReader};
 
-use crate::report::{Report, quantile, sorted};
 use sample::{SECONDS, write};
+
+use crate::report::{Report, quantile, sorted};
 
 /// Openings, and places that are sought.
 const ROUNDS: u64 = 41;

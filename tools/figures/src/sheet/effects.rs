@@ -8,11 +8,12 @@ use maulstick_rig::UserError;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{BrushName, Share};
 
+use maulstick_painting_setup::refused;
+use maulstick_script::paintings::Board;
+
 use super::gesture::{Gesture, Moment, swell};
 use super::marks::stroke;
 use super::{BRUSH, DEPTH_SHARE, GAP_MM, Panel, Sheet, library_brush, mixture_of};
-use maulstick_painting_setup::refused;
-use maulstick_script::paintings::Board;
 
 /// Size of a panel, mm.
 const PANEL_MM: [f64; 2] = [86.0, 48.0];

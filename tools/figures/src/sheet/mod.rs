@@ -28,10 +28,11 @@ use maulstick_session::Offline;
 use maulstick_types::Mixture;
 use maulstick_types::values::BrushName;
 
-use self::gesture::Hand;
 use maulstick::page::Page;
 use maulstick_painting_setup::refused;
 use maulstick_script::paintings::Board;
+
+use self::gesture::Hand;
 
 /// Margin and gaps, mm.
 const GAP_MM: f64 = 3.0;

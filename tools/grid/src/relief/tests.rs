@@ -1,8 +1,9 @@
 //! Assertions on the runs over relief, and the faults that they must find.
 
+use maulstick_haptics::plant::Hand;
+
 use super::*;
 use crate::tests::SEVENTH;
-use maulstick_haptics::plant::Hand;
 
 fn went(runs: impl IntoIterator<Item = ReliefRun>) -> Vec<(ReliefRun, ReliefOutcome)> {
     let go = |run: ReliefRun| (run, run.go().expect("a wall"));

@@ -174,7 +174,29 @@ mod tests {
     use eframe::egui::{Key, Modifiers};
     use egui_kittest::kittest::Queryable as _;
 
+    use super::STEPS;
     use crate::test_support::overlay_bench::{ctrl, window};
+
+    /// True if the places of a text are those that keys are given for.
+    fn fits(text: &str, keys: &[&str]) -> bool {
+        let parts = text
+            .split('{')
+            .skip(1)
+            .filter_map(|part| part.split_once('}'));
+        parts.map(|(place, _)| place).eq(keys.iter().copied())
+    }
+
+    #[test]
+    fn each_step_has_a_key_for_each_of_its_places() {
+        for (title, text, acts) in STEPS {
+            let keys: Vec<_> = acts.iter().map(|(place, _)| *place).collect();
+            assert!(fits(text, &keys), "{title}: {keys:?}");
+        }
+        assert!(
+            !fits("{claen} cleans the brush.", &["clean"]),
+            "a fault passes"
+        );
+    }
 
     #[test]
     fn help_has_a_first_painting_and_what_program_this_is() {

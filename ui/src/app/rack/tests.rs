@@ -8,9 +8,10 @@ use egui_kittest::kittest::Queryable as _;
 use maulstick_types::command::BrushCommand;
 use maulstick_types::command::Command;
 
+use maulstick_client::request::Request as Asked;
+
 use super::*;
 use crate::test_support::context_bench::{Bench, differ, pictures, window};
-use maulstick_client::request::Request as Asked;
 
 fn rack<'a>(bench: Bench) -> Harness<'a, Bench> {
     let mut harness = window(vec2(240.0, 700.0), bench, |ui, work| {

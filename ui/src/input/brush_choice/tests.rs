@@ -5,10 +5,11 @@ use maulstick_rig::UserError;
 use maulstick_types::command::Detail;
 use maulstick_types::values::BrushName;
 
+use maulstick_types::command::PAINT_NODE;
+
 use super::*;
 use crate::settings::presets::BeforePreset;
 use crate::test_support::context_bench::Bench;
-use maulstick_types::command::PAINT_NODE;
 
 fn defined(bench: &mut Bench) -> Vec<(String, BrushFile)> {
     let commands = bench.commands().into_iter();

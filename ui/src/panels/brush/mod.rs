@@ -26,6 +26,8 @@ use maulstick_ui_kit::language::{known, translated};
 use maulstick_ui_kit::pending::Pending;
 use maulstick_ui_kit::rows::{Number, Sliders};
 
+use maulstick_window_pen::mouse::grip::{Grip, MousePressure, MouseTurn};
+
 use crate::input::brush_choice::{resized, widths_mm};
 use crate::input::keymap::Keymap;
 use crate::input::keys::Action;
@@ -33,7 +35,6 @@ use crate::panels::Panel;
 use crate::render::brush::icon_cache;
 use crate::settings::brush_library::{called, library};
 use crate::widgets::context::{PanelContext, ask};
-use maulstick_window_pen::mouse::grip::{Grip, MousePressure, MouseTurn};
 
 /// The portrait of the brush in the hand, points.
 const PORTRAIT: [f32; 2] = [44.0, 64.0];

@@ -26,15 +26,16 @@ use maulstick_types::haptics::ForceOrder;
 use maulstick_types::stylus::{StylusInfo, StylusStatus, Trouble, axes};
 use maulstick_types::values::{ForceShare, GuidanceShare};
 
-use crate::input::keys::Action;
-use crate::panels::Panel;
-use crate::rig::state::RigState;
-use crate::widgets::context::PanelContext;
 use maulstick_client::force_history::{KEPT_S, size};
 use maulstick_client::state::Device;
 use maulstick_ui_kit::language::capitalized;
 use maulstick_ui_kit::rows::{Number, Sliders};
 use settings::Edits;
+
+use crate::input::keys::Action;
+use crate::panels::Panel;
+use crate::rig::state::RigState;
+use crate::widgets::context::PanelContext;
 
 /// Of the button that switches force off, and of a trouble.
 const RED: Color32 = Color32::from_rgb(178, 34, 34);

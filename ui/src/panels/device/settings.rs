@@ -5,13 +5,14 @@ use maulstick_device::pressure_curve::sensed;
 use maulstick_rig::config::{ACTIONS, DeviceSection, FORCES, PEN_DRIVERS};
 use maulstick_ui_kit::rows::{choice, note, row};
 
+use maulstick_client::state::Device;
+use maulstick_device_setup::change::DeviceChange;
+use maulstick_device_setup::listing::RigDevice;
+
 use super::pressure_curve::CurveEditor;
 use crate::rig::device_order::{DeviceOrder, SetupChange};
 use crate::rig::device_setup::fit_event;
 use crate::widgets::context::PanelContext;
-use maulstick_client::state::Device;
-use maulstick_device_setup::change::DeviceChange;
-use maulstick_device_setup::listing::RigDevice;
 
 /// Settings that are being changed.
 #[derive(Debug, Default)]

@@ -3,10 +3,11 @@
 use eframe::egui::{Context, Grid, Ui, Window, vec2};
 use egui_plot::{Legend, Line, Plot, PlotPoints};
 
-use super::{still, worded};
-use crate::rig::state::RigState;
 use maulstick_client::sample_history::SensedSample;
 use maulstick_client::state::Device;
+
+use super::{still, worded};
+use crate::rig::state::RigState;
 
 /// Height of a plot, points, and its length, s.
 const HEIGHT: f32 = 76.0;

@@ -12,12 +12,13 @@ use maulstick_rig::config::DeviceSection;
 use maulstick_types::haptics::ForceOrder;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus, axes};
 
+use maulstick_client::request::Request;
+
 use super::*;
 use crate::rig::device_order::{DeviceOrder, FitProgress, SetupChange};
 use crate::rig::device_setup::fit_event;
 use crate::rig::state::RigState;
 use crate::test_support::panel_bench::{Bench, harness, picture, rig};
-use maulstick_client::request::Request;
 
 fn info(device: &str, driver: &str, priority: i32, senses: u32, drives: u32) -> StylusInfo {
     StylusInfo {

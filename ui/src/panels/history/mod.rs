@@ -19,9 +19,10 @@ use maulstick_types::scene::NamedVersion;
 use maulstick_types::values::VersionName;
 use maulstick_ui_kit::rows::note;
 
+use maulstick_client::thumbnails::{Picture, Pictured};
+
 use crate::panels::Panel;
 use crate::widgets::context::{PanelContext, ask};
-use maulstick_client::thumbnails::{Picture, Pictured};
 
 pub(crate) mod outcome_words;
 mod steps;

@@ -5,8 +5,9 @@ use maulstick_types::EditFields as _;
 use maulstick_types::command::{Command, Detail};
 use maulstick_ui_kit::language::{layer_name, step, translated};
 
-use crate::settings::brush_load;
 use maulstick_client::request::Request;
+
+use crate::settings::brush_load;
 
 /// Edits whose effect may be out of view, by their names.
 const PAST_TENSES: [(&str, &str); 6] = [

@@ -8,10 +8,11 @@ use maulstick_painting::edits::{GoTo, Redo, Undo};
 use maulstick_types::paint::HistoryStep;
 use maulstick_ui_kit::language;
 
+use maulstick_client::thumbnails::Pictured;
+
 use super::{Textures, paint_picture};
 use crate::input::keys::Action;
 use crate::widgets::context::{PanelContext, ask};
-use maulstick_client::thumbnails::Pictured;
 
 /// Width and height of the picture of a step, points.
 const PICTURE: [f32; 2] = [40.0, 32.0];

@@ -6,10 +6,11 @@ use maulstick_types::command::Command;
 use maulstick_types::paint::{HistoryStep, StepName};
 use maulstick_types::values::VersionName;
 
+use maulstick_client::state::PaintNode;
+
 use super::*;
 use crate::rig::state::RigState;
 use crate::test_support::panel_bench::{Bench, harness, picture, rig, steps};
-use maulstick_client::state::PaintNode;
 
 fn landscape([red, green, blue]: [u8; 3]) -> Picture {
     let pixel = |i: usize| {

@@ -9,13 +9,14 @@ use maulstick_optics::light::shadow::REACH;
 use maulstick_types::FrameView;
 use maulstick_types::paint::TILE;
 
+use maulstick_client::frames::tile_planner::{Asked, AtlasState, TilePlanner};
+use maulstick_client::frames::tiles::{TileRect, Wanted};
+use maulstick_client::frames::{ShownTile, texels};
+
 use super::tests::{lamp, surface as small};
 use super::*;
 use crate::render::gpu::testing::{draw, gpu, read, target};
 use crate::view::visible_tiles::{cells_of, wanted_by};
-use maulstick_client::frames::tile_planner::{Asked, AtlasState, TilePlanner};
-use maulstick_client::frames::tiles::{TileRect, Wanted};
-use maulstick_client::frames::{ShownTile, texels};
 
 const CELLS: [u32; 2] = [2100, 1700];
 const VIEW: [u32; 2] = [240, 180];

@@ -9,12 +9,13 @@ use maulstick_rig::config::ViewSection;
 use maulstick_rig::{UserError, files};
 use maulstick_types::scene::{CANVAS, PALETTE};
 
-use super::ExportOptions;
-use crate::commands::{progress, progress_bar, say};
 use maulstick_painting_setup::destination::export;
 use maulstick_painting_setup::document::{read, wrong};
 use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
 use maulstick_painting_setup::refused;
+
+use super::ExportOptions;
+use crate::commands::{progress, progress_bar, say};
 
 /// Writes a painting for other programs, from its file.
 ///

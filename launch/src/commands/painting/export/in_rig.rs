@@ -6,11 +6,12 @@ use maulstick_rig::files::Kind;
 use maulstick_types::command::{ExportOrder, FileCommand};
 use maulstick_types::scene::{CANVAS, PALETTE};
 
+use maulstick_painting_setup::outputs::{Relayed, UsedFile, check_outputs, named_by};
+
 use super::ExportOptions;
 use crate::commands::client::Client;
 use crate::commands::open::LONGEST;
 use crate::commands::say;
-use maulstick_painting_setup::outputs::{Relayed, UsedFile, check_outputs, named_by};
 
 /// Writes the current painting through the rig.
 ///

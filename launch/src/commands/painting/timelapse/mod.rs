@@ -15,11 +15,12 @@ use maulstick_rig::UserError;
 use maulstick_rig::config::BACKENDS;
 use maulstick_session::{Reexecution, TilePrints, WorkClock, tile_prints};
 
-use self::film_file::{FilmFile, FilmKind};
-use crate::commands::{progress_bar, say};
 use maulstick_painting_setup::backend::choose_backend;
 use maulstick_painting_setup::document::{read, wrong};
 use maulstick_painting_setup::refused;
+
+use self::film_file::{FilmFile, FilmKind};
+use crate::commands::{progress_bar, say};
 
 /// Longest time for which the finished painting is shown at the end, s.
 const HOLD_S: f64 = 2.0;

@@ -6,8 +6,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::wire::schema::Schema;
 use serde::Deserialize;
+
+use crate::wire::schema::Schema;
 
 use super::value::{Fields, Value};
 

@@ -2,9 +2,10 @@
 
 use std::sync::LazyLock;
 
+use proptest::prelude::*;
+
 use crate::stylus::{StylusPose, StylusSample};
 use crate::{CATALOGUE, Flags, Message as _, Origin, encode};
-use proptest::prelude::*;
 
 use super::*;
 

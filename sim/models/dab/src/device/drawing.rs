@@ -1,9 +1,10 @@
 //! Drawings of the head in a step ([`each_drawing`]), and their cells.
 
-use crate::stroke::{Stroker, each_drawing};
 use maulstick_brush::HeadPose;
 use maulstick_model::brush::head::low_bounds;
 use maulstick_model::interface::{Step, Sweep};
+
+use crate::stroke::{Stroker, each_drawing};
 
 use maulstick_gpu::steps::record::Grid;
 

@@ -19,10 +19,11 @@ mod stages;
 
 use std::ops::Range;
 
+use maulstick_model::interface::Step;
+
 use crate::dither::Dither;
 use crate::stroke::Stroker;
 use crate::{Dab, first_blend};
-use maulstick_model::interface::Step;
 
 use drawing::{drawings, grid};
 use maulstick_gpu::steps::device_layout::DeviceLayout;

@@ -1,15 +1,17 @@
 //! State on the device after a stage of a step, for tests that compare each stage with its twin.
 
-use crate::stroke::Stroker;
 use bytemuck::pod_collect_to_vec;
 use maulstick_model::interface::Step;
+
+use crate::stroke::Stroker;
+
+use maulstick_gpu::device::{Device, GpuError};
+use maulstick_gpu::steps::kernels::Binding;
+use maulstick_gpu::steps::probing::Probing;
 
 use super::Steps;
 use super::drawing::drawings;
 use super::stages::KERNELS;
-use maulstick_gpu::device::{Device, GpuError};
-use maulstick_gpu::steps::kernels::Binding;
-use maulstick_gpu::steps::probing::Probing;
 
 /// The part of the head over a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]

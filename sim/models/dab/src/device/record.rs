@@ -1,12 +1,13 @@
 //! A blend in the layout of the shaders.
 
-use crate::dither::Dither;
-use crate::reservoir::Refill;
-use crate::transfer::Limits;
 use bytemuck::{Pod, Zeroable};
 use maulstick_canvas::quantum::QUANTA_PER_UNIT;
 use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::interface::{Step, Transfer};
+
+use crate::dither::Dither;
+use crate::reservoir::Refill;
+use crate::transfer::Limits;
 
 use maulstick_gpu::steps::record::{Grid, RECORD_WORDS};
 

@@ -4,12 +4,13 @@ use std::time::{Duration, Instant};
 
 use bytemuck::cast_slice;
 
-use super::stages::{COPIES, KERNELS};
-use crate::stages::advection::STAIN;
 use maulstick_gpu::arena::Arena;
 use maulstick_gpu::device::{Device, GpuError};
 use maulstick_gpu::steps::kernels::{Binding, Kernel, Pipeline};
 use maulstick_gpu::steps::record::{RECORD_BYTES, StepRecord};
+
+use super::stages::{COPIES, KERNELS};
+use crate::stages::advection::STAIN;
 
 /// A square of cells on which all paint moves.
 pub struct Measured {

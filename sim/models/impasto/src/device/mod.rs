@@ -15,8 +15,9 @@ mod stages;
 
 use std::ops::Range;
 
-use crate::Impasto;
 use maulstick_model::interface::Step;
+
+use crate::Impasto;
 
 use maulstick_gpu::steps::device_layout::DeviceLayout;
 use maulstick_gpu::steps::model::{GpuModel, Planner};

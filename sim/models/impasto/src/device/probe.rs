@@ -4,11 +4,12 @@ use bytemuck::pod_collect_to_vec;
 use maulstick_model::footprint::contact::Contact;
 use maulstick_model::interface::Step;
 
-use super::stages::KERNELS;
-use super::{Steps, pushed};
 use maulstick_gpu::device::{Device, GpuError};
 use maulstick_gpu::steps::kernels::Binding;
 use maulstick_gpu::steps::probing::Probing;
+
+use super::stages::KERNELS;
+use super::{Steps, pushed};
 
 /// State after a stage.
 #[derive(Clone, Debug)]

@@ -1,8 +1,9 @@
 //! The stages of impasto in their order.
 
-use crate::stages::velocity::{EASE, SLIP, SQUISH, STABLE};
 use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::transfer::{POOL, SWAP_FILM};
+
+use crate::stages::velocity::{EASE, SLIP, SQUISH, STABLE};
 
 use maulstick_gpu::steps::kernels::{Binding as B, Groups, Kernel, RASTERIZER};
 

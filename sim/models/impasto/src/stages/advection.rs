@@ -12,8 +12,9 @@ use maulstick_canvas::window::{Area, Window};
 use maulstick_num::fork_join::each;
 use maulstick_num::wide;
 
-use super::velocity::Faces;
 use maulstick_model::footprint::shares_of;
+
+use super::velocity::Faces;
 
 /// Default stain: paint that stays on a cell however hard it is brushed, quanta, 3 µm (§ 6.4.1, size).
 pub const STAIN: f32 = 2013.0;

@@ -8,10 +8,11 @@
 use maulstick_num::select::larger;
 use maulstick_num::wide;
 
-use super::bristle_flow::{first_of, part};
 use maulstick_model::brush::load::PaintOnBrush;
 use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 use maulstick_model::interface::Step;
+
+use super::bristle_flow::{first_of, part};
 
 /// Evens films out: between strips of either order in turn, and along them.
 pub fn seep(step: &mut Step<'_>) {

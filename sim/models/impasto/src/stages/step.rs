@@ -1,5 +1,9 @@
 //! The whole step of impasto.
 
+use maulstick_model::footprint::Footprint;
+use maulstick_model::interface::{PaintModel, Rest, Step, StepReport, Transfer};
+use maulstick_model::modes::{sample, vacuum};
+
 use super::advection::{Advection, Axis};
 use super::bristle_flow::flow;
 use super::exchange::Exchange;
@@ -7,9 +11,6 @@ use super::levelling::HALO;
 use super::rest::level;
 use super::seep::seep;
 use super::velocity::Faces;
-use maulstick_model::footprint::Footprint;
-use maulstick_model::interface::{PaintModel, Rest, Step, StepReport, Transfer};
-use maulstick_model::modes::{sample, vacuum};
 
 /// The paint model `impasto`, with the buffers of its stages.
 #[derive(Debug, Default)]

@@ -10,9 +10,10 @@ mod sweep;
 
 use maulstick_num::wide;
 
+use sweep::Sweep;
+
 use crate::domain::{Domain, LEAST_FILL};
 use crate::grid::Grid;
-use sweep::Sweep;
 
 /// Greatest share of a cell that goes through one face in a part of a step.
 const LARGEST_COURANT: f32 = 0.5;

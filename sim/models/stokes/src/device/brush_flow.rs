@@ -1,13 +1,15 @@
 //! The flow around a brush of the paint model `stokes`, computed on the device window by window.
 
-use crate::coarse::FlowWindow;
-use crate::flow_backend::{FlowBackend, FlowError};
 use maulstick_stokes::domain::LEAST_FILL;
 use maulstick_stokes::flow::{Effort, layers_with_paint};
 use maulstick_stokes::grid::Grid;
 
-use super::{GpuFlow, Tuning};
+use crate::coarse::FlowWindow;
+use crate::flow_backend::{FlowBackend, FlowError};
+
 use maulstick_gpu::device::{Choice, Device, GpuError};
+
+use super::{GpuFlow, Tuning};
 
 /// Number of cells with paint, and air above them, from which a device is used where the processor may be. On one core
 /// of a Xeon 32×32×16 cells take 6 to 9 ms, and others in proportion; on an H200 the dispatches take 3 ms for any

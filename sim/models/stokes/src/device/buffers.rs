@@ -3,10 +3,11 @@
 use bytemuck::bytes_of;
 use wgpu::BufferUsages as Usage;
 
+use maulstick_gpu::device::Device;
+
 use super::kernels::Pipelines;
 use super::record::{CALL_BYTES, CALL_STRIDE, WINDOW_BYTES};
 use super::schedule::Dispatch;
-use maulstick_gpu::device::Device;
 
 /// Buffers for windows up to a size.
 #[derive(Debug)]

@@ -5,8 +5,9 @@ use std::time::{Duration, Instant};
 use maulstick_stokes::flow::Conditions;
 use wgpu::BufferUsages as Usage;
 
-use super::GpuFlow;
 use maulstick_gpu::device::GpuError;
+
+use super::GpuFlow;
 
 /// Number of steps submitted together.
 const TOGETHER: usize = 8;

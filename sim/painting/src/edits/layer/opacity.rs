@@ -9,10 +9,11 @@ use maulstick_types::paint::StepName;
 use maulstick_types::values::Quantity as _;
 use maulstick_types::values::{LayerName, OpacityFactor, ValueError};
 
+use maulstick_types::scene::Scene;
+
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
 use crate::error::{EditError, LayerError};
 use crate::painting::Painting;
-use maulstick_types::scene::Scene;
 
 /// A dry layer.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]

@@ -6,8 +6,9 @@ mod models;
 
 use maulstick_types::paint::Decision;
 
-use super::surfaces::SurfaceState;
 use models::Models;
+
+use super::surfaces::SurfaceState;
 
 /// A fact of a model's backend. It is reported where a stroke ends.
 struct BackendFact<T> {

@@ -5,13 +5,14 @@ use std::sync::Arc;
 use maulstick_canvas::quantum::{Counts, SLOTS, add};
 use maulstick_canvas::tile::{Tile, TileId};
 
+use maulstick_types::paint::StepName;
+
 use super::Workbench;
 use crate::clock::Clock;
 use crate::history::{SurfaceMaterial, TilePlace, TileRef, materials};
 use crate::ledger::Ledger;
 use crate::painting::surfaces::Changed;
 use crate::painting::surfaces::film::Films;
-use maulstick_types::paint::StepName;
 
 impl Workbench {
     /// Puts a tile in the place of another.

@@ -56,7 +56,7 @@ impl Workbench {
         self.backend.find_facts();
     }
 
-    /// Notes what so many steps of a brush did on a surface; of deferred ones that is known when they are settled.
+    /// Notes the effects of a brush's steps on a surface; those of deferred ones are known when they are settled.
     fn note(&mut self, brush: usize, surface: usize, report: &StepReport, steps: u32) {
         self.accounts.note(report);
         let surfaces = &self.desk.surfaces;

@@ -16,10 +16,11 @@ use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 use maulstick_model::path::PathStepper;
 use maulstick_types::{Mixture, name_hash};
 
+use handling::UnderBrush;
+
 use super::backend::deferral::Deferral;
 use crate::brush_colour::Carried;
 use crate::error::BrushError;
-use handling::UnderBrush;
 
 /// Bits of a seed.
 const SEEDS: u64 = 0x7fff_ffff;

@@ -7,8 +7,9 @@ pub(crate) mod preparation;
 mod relief_below;
 mod wells;
 
-use crate::error::EditError;
 use std::sync::Arc;
+
+use crate::error::EditError;
 
 use maulstick_appearance::light::{changes_colour, studio_settings};
 use maulstick_canvas::assets::Assets;

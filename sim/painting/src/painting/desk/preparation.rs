@@ -7,7 +7,7 @@ use maulstick_types::scene::{PALETTE, Surface};
 
 /// Share of a film's deficit filled from inside, and of its surplus returned, at each flow in a brush on the palette,
 /// on reference cells: there it is filled through.
-const DIP: f64 = 0.6;
+const REFILL_SHARE: f64 = 0.6;
 /// Factor on the path length where a brush is filled: it is stirred and turned.
 const STIRRED: f32 = 4.0;
 
@@ -38,7 +38,8 @@ impl Preparation {
             return traits;
         }
         BrushTraits {
-            refill: 1.0 - maulstick_num::powf(1.0 - DIP, f64::from(traits.cell_per_reference)),
+            refill: 1.0
+                - maulstick_num::powf(1.0 - REFILL_SHARE, f64::from(traits.cell_per_reference)),
             cell_per_reference: STIRRED * traits.cell_per_reference,
             ..traits
         }

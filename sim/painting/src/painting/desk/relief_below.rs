@@ -30,7 +30,7 @@ const POINTS: i64 = 4;
 const FAR_M: f64 = 0.03;
 
 impl Desk {
-    /// Relief below a brush of a head so long, m, as it was solved; none for one that is far from the surface.
+    /// Relief below a brush, of a head's length, m, as it was solved; none for one that is far from the surface.
     pub(crate) fn relief_below(&self, head_m: f64, solve: &Solve) -> Option<BrushRelief> {
         let surface = self.surfaces.find(solve.surface)?;
         let zoom = self

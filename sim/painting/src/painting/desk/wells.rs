@@ -1,7 +1,8 @@
 //! The wells of a palette: their places and kinds.
 
-use crate::error::{EditError, SurfaceError};
 use maulstick_types::scene::{Surface, Well, WellKind};
+
+use crate::error::{EditError, SurfaceError};
 
 use super::Desk;
 

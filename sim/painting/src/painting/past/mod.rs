@@ -3,10 +3,11 @@
 pub(crate) mod record;
 pub(crate) mod versions;
 
-use super::surfaces::Surfaces;
-use crate::history::History;
 use record::RecordState;
 use versions::Versions;
+
+use super::surfaces::Surfaces;
+use crate::history::History;
 
 /// What is kept of a painting's past.
 #[derive(Default)]

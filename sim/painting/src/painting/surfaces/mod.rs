@@ -20,10 +20,11 @@ use maulstick_canvas::tile::{Tile, Version};
 use maulstick_canvas::window::Window;
 use maulstick_types::scene::Scene;
 
+use maulstick_models::{ModelEntry, model_called};
+
 use super::optics::Optics;
 use crate::error::{EditError, SurfaceError};
 use crate::history::{TilePlace, TileRef};
-use maulstick_models::{ModelEntry, model_called};
 
 /// A surface: its tiles, the model of their paint, and the ground under them.
 #[derive(Clone, Debug)]

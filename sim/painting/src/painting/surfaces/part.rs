@@ -1,8 +1,9 @@
 //! Parts of surfaces, and their wet and dry paint.
 
-use crate::error::{EditError, SurfaceError};
 use std::collections::BTreeSet;
 use std::sync::Arc;
+
+use crate::error::{EditError, SurfaceError};
 
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::tile::{Tile, TileId};

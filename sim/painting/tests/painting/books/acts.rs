@@ -147,7 +147,7 @@ fn prepare(painting: &mut Painting, surface: u32, last: bool) {
     done(painting, Size { stain, surface });
 }
 
-/// Mirrors the wells, or leaves so many of the first ones, so that others move or go.
+/// Mirrors the wells, or leaves the first of them alone, so that others move or go.
 fn move_wells(painting: &mut Painting, count: usize) {
     let palette = painting.scene().surfaces[1].clone();
     let wells = if count == 0 {

@@ -22,8 +22,9 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
-use crate::studio::{self, mixture, round, state};
 use acts::{act, perform, way};
+
+use crate::studio::{self, mixture, round, state};
 
 const BRUSHES: [&str; 2] = ["main", "other"];
 const MIXTURES: [&str; 3] = [

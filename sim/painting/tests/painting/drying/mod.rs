@@ -19,11 +19,12 @@ use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{LayerName, OpacityFactor, Share, Ticks};
 use proptest::prelude::*;
 
-use crate::studio::{fill, load};
 use easel::{
     both, colours, counts, depth, dry, dry_over, farthest, mean_off, painted, sequencer, stroke,
     sum, ticks, wet, wet_cells,
 };
+
+use crate::studio::{fill, load};
 
 const CELLS: [u32; 2] = [150, 100];
 const CELL_M: f64 = 2.5e-4;

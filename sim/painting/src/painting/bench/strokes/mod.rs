@@ -8,13 +8,15 @@ mod tiles;
 mod timing;
 mod wells;
 
-use crate::error::{BrushError, EditError};
 use maulstick_model::brush::scale::Scale;
 use maulstick_model::path::PathStepper;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 
-use super::Workbench;
+use crate::error::{BrushError, EditError};
+
 use stroke::Stroke;
+
+use super::Workbench;
 
 impl Workbench {
     /// Paints what a brush did in its epoch: strokes are numbered from 1 in each.
@@ -37,8 +39,11 @@ impl Workbench {
 
     fn solve(&mut self, brush: usize, epoch: u32, solve: &Solve) -> Result<(), EditError> {
         let own = &self.brushes[brush];
-        let fits = solve.stroke == 0 || own.head.fits(solve.angles_rad.len());
-        if !fits || solve.fault().is_some() {
+        if let Some(fault) = solve.fault() {
+            let brush = own.name.clone();
+            return Err(BrushError::State { brush, fault }.into());
+        }
+        if solve.stroke != 0 && !own.head.fits(solve.angles_rad.len()) {
             return Err(BrushError::Unfit(own.name.clone()).into());
         }
         self.accounts.note_time(solve.event_ns);

@@ -17,7 +17,7 @@ use crate::painting::brushes::PaintingBrush;
 use crate::painting::surfaces::SurfaceState;
 
 /// Steps of a landing on a palette, about as high as its heaps.
-const DIP: f64 = 4.0;
+const DIP_STEPS: f64 = 4.0;
 
 /// A brush on a surface, at one scale.
 pub(super) struct Stroke<'a> {
@@ -85,7 +85,7 @@ impl Stroke<'_> {
             path.advance(&head, to, |sweep, doublings| self.step(sweep, doublings));
             path
         } else if lands {
-            let steps = if self.has_wells() { DIP } else { 1.0 };
+            let steps = if self.has_wells() { DIP_STEPS } else { 1.0 };
             PathStepper::landing(&head, (waypoint, steps), scale, |sweep, doublings| {
                 self.step(sweep, doublings);
             })

@@ -25,7 +25,7 @@ const SOAK_LIMIT: f64 = 0.85;
 /// Share of the missing medium that is soaked up in a step.
 const SOAK_RATE: f64 = 0.1;
 /// A strip is down within this of the surface, cells.
-const DIPS: f32 = 1.0;
+const DIP_CELLS: f32 = 1.0;
 
 /// The cells of a window that are in a well and in a rectangle.
 fn cells_within(
@@ -58,7 +58,7 @@ fn cells_within(
 
 /// True if a strip is down on the surface within a well.
 fn is_in((pose, traits): (&HeadPose, &BrushTraits), well: &Well, cell_m: f64) -> bool {
-    let low = traits.half_thickness + traits.sink + DIPS;
+    let low = traits.half_thickness + traits.sink + DIP_CELLS;
     let [x, y] = well.center_m.map(|m| (m / cell_m) as f32);
     let radius = (well.radius_m / cell_m) as f32;
     let places = pose.x.iter().zip(&pose.y).zip(&pose.z);
