@@ -2,17 +2,13 @@
 
 use std::path::Path;
 
-use maulstick_appearance::ground::check_ground;
-use maulstick_canvas::assets::{Assets, IMAGE, SPECTRUM};
 use maulstick_device::Take;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::PaintingSetup;
-use maulstick_painting::edits::{Form, Ground, LightChange, Tooth};
-use maulstick_painting::setup::relief_called;
+use maulstick_painting::edits::{self, Form, LightChange};
 use maulstick_rig::UserError;
 use maulstick_rig::config::{BrushSection, is_path};
 use maulstick_types::nearest::choice;
-use maulstick_types::scene::CANVAS;
 use maulstick_types::wire::topics::check_name;
 use serde::Deserialize as _;
 
@@ -43,6 +39,7 @@ pub(super) fn edit<E: Form>(step: &Step<'_>, library: &PaintLibrary) -> Result<A
     }
     let mut edit = step.keys.read(E::read_step)?;
     edit.check_idle()?;
+    edit.check_names().map_err(refused)?;
     for mixture in edit.mixtures_mut() {
         let known = library.check(mixture);
         *mixture = known.map_err(refused)?;
@@ -56,11 +53,11 @@ struct UndoStep {
     undo: u32,
 }
 
-pub(super) fn undo(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
+pub(super) fn undo(step: &Step<'_>) -> Result<Option<Act>, UserError> {
     let UndoStep { undo } = step.keys.read(UndoStep::deserialize)?;
     match undo {
         0 => Err(UserError::usage("an undo of 0 steps does nothing").help("leave it out")),
-        times => Ok(Act::Undo(times)),
+        times => Ok(Some(Act::Undo(times))),
     }
 }
 
@@ -221,29 +218,22 @@ pub(super) fn stroke(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError
     Ok(Act::Stroke(stroke))
 }
 
-/// True if a name refers to something stored in a painting, which alone can check it.
-fn is_held(name: &str) -> bool {
-    name.starts_with(IMAGE) || name.starts_with(SPECTRUM)
-}
-
-pub(super) fn ground(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
+pub(super) fn ground(step: &Step<'_>) -> Result<Option<Act>, UserError> {
     let name = step.keys.beside(step.due(step.keys.text("ground")?)?);
     let ground = GroundFile::read(&name);
     let ground = step.keys.named("ground", file(&name), ground)?;
-    let edit = match &ground {
-        GroundFile::Named(name) => {
-            if !is_held(name) {
-                check_ground(name, &Assets::default()).map_err(refused)?;
-            }
-            Ground::named(CANVAS, name)?
+    Ok(Some(match ground.edit()? {
+        Some(edit) => {
+            let known = edits::read(&edit)?;
+            known.check_names().map_err(refused)?;
+            Act::Edit(edit)
         }
-        GroundFile::Spectrum(csv) => Ground::spectrum(CANVAS, csv)?,
-        GroundFile::Picture(..) => return Ok(Act::Ground(ground)),
-    };
-    Ok(Act::Edit(edit.into()))
+        None => Act::Ground(ground),
+    }))
 }
 
-pub(super) fn tooth(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
+/// A tooth of a picture; another one is the edit alone.
+pub(super) fn tooth(step: &Step<'_>) -> Result<Option<Act>, UserError> {
     let keys = &step.keys;
     let tooth = keys.beside(step.due(keys.text("tooth")?)?);
     let seed = keys.is_given("seed");
@@ -255,7 +245,8 @@ pub(super) fn tooth(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError>
                 .help("a picture's tooth is the picture: leave it out"));
         }
         let picture = ToothPicture::read(&tooth, sizes[0], sizes[1]);
-        return Ok(Act::Tooth(keys.named("tooth", file(&tooth), picture)?));
+        let picture = keys.named("tooth", file(&tooth), picture)?;
+        return Ok(Some(Act::Tooth(picture)));
     }
     for (key, size) in [("width_mm", sizes[0]), ("depth_um", sizes[1])] {
         if size.is_some() {
@@ -267,15 +258,10 @@ pub(super) fn tooth(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError>
                 .help("it is for a picture's, such as { tooth = \"weave.png\", width_mm = 60 }"));
         }
     }
-    let edit: Tooth = step.keys.read(Form::read_step)?;
-    if !is_held(&edit.tooth) {
-        let cell_m = PaintingSetup::default().cell_m;
-        relief_called(&edit.tooth, edit.seed, cell_m, &Assets::default()).map_err(refused)?;
-    }
-    Ok(Act::Edit(edit.into()))
+    Ok(None)
 }
 
-pub(super) fn light(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
+pub(super) fn light(step: &Step<'_>) -> Result<Option<Act>, UserError> {
     let keys = step.due(step.keys.table("light")?)?;
     if keys.keys().is_empty() {
         return Err(UserError::usage(
@@ -293,5 +279,5 @@ pub(super) fn light(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError>
     let name = change.illuminant.clone().unwrap_or_default();
     let on_default = changed(&change, &PaintingSetup::default().light);
     step.keys.named("light", file(&name), on_default)?;
-    Ok(Act::Light(change))
+    Ok(Some(Act::Light(change)))
 }

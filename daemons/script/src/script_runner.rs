@@ -1,25 +1,19 @@
 //! Painting by a script, a step after the other.
 
-use std::sync::Arc;
 use std::time::Instant;
 
 use indicatif::ProgressBar;
 use maulstick_appearance::light::changes_colour;
-use maulstick_canvas::assets::IMAGE;
-use maulstick_canvas::store::TileStore;
 use maulstick_painting::Sequencer;
-use maulstick_painting::edits::{EditEntry, Ground, Relight, Tooth, Undo};
+use maulstick_painting::edits::{EditEntry, common};
 use maulstick_rig::UserError;
 use maulstick_session::{Autosave, Offline};
-use maulstick_types::Mixture;
-use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::StylusSample;
-use maulstick_types::values::{BrushName, MaterialName};
+use maulstick_types::values::BrushName;
+use maulstick_types::{Edit, Mixture};
 
 use maulstick_painting_setup::lamp::changed;
 use maulstick_painting_setup::refused;
-use maulstick_painting_setup::surface::ground::GroundFile;
-use maulstick_painting_setup::surface::tooth::ToothPicture;
 
 use crate::duration::time_ns;
 use crate::{Act, Script};
@@ -95,8 +89,14 @@ impl<'a> ScriptRunner<'a> {
                     .map(|cells| 1e3 * canvas.cell_m * f64::from(cells));
                 return self.follow(&stroke.samples(size_mm), Vec::new());
             }
-            Act::Ground(file) => return self.prime(&file),
-            Act::Tooth(picture) => return self.weave(&picture),
+            Act::Ground(file) => {
+                let edit = file.embed(self.offline.painting_mut())?;
+                return self.apply_embedded(edit);
+            }
+            Act::Tooth(picture) => {
+                let edit = picture.embed(self.offline.painting_mut())?;
+                return self.apply_embedded(edit);
+            }
             Act::Wait(ticks) => {
                 self.wait(ticks);
                 Ok(())
@@ -104,8 +104,12 @@ impl<'a> ScriptRunner<'a> {
             Act::Light(change) => {
                 let before = self.offline.painting_mut().scene().light.clone();
                 let light = changed(&change, &before)?;
-                let expose = change.exposure.is_none() && changes_colour(&light, &before);
-                self.offline.edit(Relight { light, expose }).map(drop)
+                let relit = if change.exposure.is_none() && changes_colour(&light, &before) {
+                    common::relight_exposed(light)
+                } else {
+                    common::relight(light)
+                };
+                self.offline.edit(relit).map(drop)
             }
             Act::Undo(times) => return self.take_back(times),
         };
@@ -114,40 +118,15 @@ impl<'a> ScriptRunner<'a> {
         Ok(())
     }
 
-    fn prime(&mut self, file: &GroundFile) -> Result<(), UserError> {
-        let painting = self.offline.painting_mut();
-        let cells = painting.store(CANVAS).map_or([1, 1], TileStore::cells);
-        let bytes = file.picture(cells)?.unwrap_or_default();
-        let ground = format!("{IMAGE}{}", self.embed(bytes)?);
-        let edit = Ground::named(CANVAS, &ground)?;
-        self.offline.edit(edit).map_err(refused)?;
-        self.keep();
-        Ok(())
-    }
-
-    fn weave(&mut self, picture: &ToothPicture) -> Result<(), UserError> {
-        let canvas = &self.offline.painting_mut().scene().surfaces[0];
-        let (cells, cell_m) = (canvas.cells, canvas.cell_m);
-        let hash = self.embed(picture.png(cells, cell_m)?)?;
-        let edit = Tooth {
-            tooth: MaterialName::new(picture.name(hash, cells, cell_m))?,
-            seed: 1,
-            surface: CANVAS,
-        };
-        self.offline.edit(edit).map_err(refused)?;
-        self.keep();
-        Ok(())
-    }
-
-    /// Adds a picture to the painting, and returns its hash.
-    fn embed(&mut self, bytes: Arc<[u8]>) -> Result<String, UserError> {
-        let painting = self.offline.painting_mut();
-        let hash = painting.embed(bytes).map_err(refused)?;
+    /// Applies an edit that names a picture which the painting has just been given.
+    fn apply_embedded(&mut self, edit: Edit) -> Result<(), UserError> {
         if let Some(autosave) = self.autosave {
             // The document has the picture before the journal names it.
             autosave.settle(self.offline.sequencer_mut());
         }
-        Ok(hash)
+        self.offline.edit(edit).map_err(refused)?;
+        self.keep();
+        Ok(())
     }
 
     fn take_back(&mut self, times: u32) -> Result<(), UserError> {
@@ -169,8 +148,7 @@ impl<'a> ScriptRunner<'a> {
             return Err(UserError::usage(what).help(help));
         }
         for _ in 0..times {
-            let undo = Undo { brush: None };
-            self.offline.edit(undo).map_err(refused)?;
+            self.offline.edit(common::undo()).map_err(refused)?;
         }
         self.keep();
         Ok(())

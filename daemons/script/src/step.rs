@@ -10,6 +10,9 @@ use crate::entries::Entries;
 /// Reader of a step.
 pub(super) type Read = fn(&Step<'_>, &PaintLibrary) -> Result<Act, UserError>;
 
+/// Reader of a step with files, changes and counts, which an edit does not hold; `None` where it has none of them.
+pub(super) type More = fn(&Step<'_>) -> Result<Option<Act>, UserError>;
+
 /// A kind of step.
 #[derive(Debug)]
 pub(super) struct Kind {
@@ -17,6 +20,8 @@ pub(super) struct Kind {
     pub(super) form: StepForm,
     /// What reads one.
     pub(super) act: Read,
+    /// What reads one that says more than its edit holds.
+    pub(super) more: Option<More>,
 }
 
 impl Kind {

@@ -12,10 +12,11 @@ use toml::de::DeTable;
 use super::Act;
 use super::acts::{brush, edit, ground, light, stroke, take, tooth, undo};
 use super::entries::{Entries, Source};
-use super::step::{Kind, Read, Step};
+use super::step::{Kind, More, Read, Step};
 
 const fn kind(form: StepForm, act: Read) -> Kind {
-    Kind { form, act }
+    let more = None;
+    Kind { form, act, more }
 }
 
 macro_rules! edit_kinds {
@@ -34,8 +35,8 @@ macro_rules! edit_kinds {
 
 maulstick_painting::for_each_edit!(edit_kinds);
 
-/// Edits for which a script says more than they hold: files, changes and counts.
-const MORE: [(&str, Read); 4] = [
+/// Keys of the edits for which a script says more than they hold: files, changes and counts.
+const MORE: [(&str, More); 4] = [
     ("ground", ground),
     ("tooth", tooth),
     ("light", light),
@@ -85,9 +86,8 @@ pub(super) static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| {
     ];
     kinds.extend(edit_kinds());
     for kind in &mut kinds {
-        if let Some((_, act)) = MORE.iter().find(|(key, _)| *key == kind.form.key) {
-            kind.act = *act;
-        }
+        let more = MORE.iter().find(|(key, _)| *key == kind.form.key);
+        kind.more = more.map(|(_, more)| *more);
     }
     kinds
 });
@@ -171,7 +171,13 @@ pub(super) fn listed<'a>(
 
 /// Action of a step. An error has its place, and advice.
 pub(super) fn act(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, UserError> {
-    (step.kind.act)(step, library).map_err(|mut fault| {
+    let more = step.kind.more.map_or(Ok(None), |more| more(step));
+    let act = match more {
+        Ok(None) => (step.kind.act)(step, library),
+        Ok(Some(act)) => Ok(act),
+        Err(fault) => Err(fault),
+    };
+    act.map_err(|mut fault| {
         fault.place.get_or_insert_with(|| step.place());
         fault.help.get_or_insert_with(|| step.keys.for_example());
         fault

@@ -2,7 +2,7 @@
 
 use clap::error::ErrorKind;
 use clap::{Args as _, FromArgMatches, Subcommand};
-use maulstick_painting::edits::{self, CommandForm, Ground, GroundSource};
+use maulstick_painting::edits::{self, CommandForm, common};
 use maulstick_rig::UserError;
 use maulstick_types::Edit;
 
@@ -107,8 +107,8 @@ pub fn run<const GROUP: usize>(command: &EditCommand<GROUP>) -> Result<i32, User
     let mut edit = command.edit.clone();
     let known = edits::read(&edit)?;
     known.check_idle()?;
-    if let Some(ground) = edit.get() {
-        edit = read_ground(ground)?.into();
+    if let Some(name) = common::ground_name(&edit) {
+        edit = with_ground(&name)?;
     }
     let done = Client::command(&command.target, edit)?;
     if let Some(said) = known.reply() {
@@ -117,21 +117,15 @@ pub fn run<const GROUP: usize>(command: &EditCommand<GROUP>) -> Result<i32, User
     Ok(0)
 }
 
-/// Replaces the path of a spectrum file by its contents.
-fn read_ground(edit: Ground) -> Result<Ground, UserError> {
-    let GroundSource::Named { name } = &edit.ground else {
-        return Ok(edit);
-    };
-    Ok(match GroundFile::read(name)? {
-        GroundFile::Named(name) => Ground::named(edit.surface, &name)?,
-        GroundFile::Spectrum(csv) => Ground::spectrum(edit.surface, &csv)?,
-        GroundFile::Picture(_, name) => {
-            return Err(UserError::usage("a running rig takes no picture as ground")
-                .at(name)
-                .help(
-                    "close it: `maulstick painting import FILE PICTURE --as ground`; or begin with it: \
-                     `maulstick up --ground PICTURE`",
-                ));
-        }
+/// The edit with the ground of this name, or of a file's reflectances.
+fn with_ground(name: &str) -> Result<Edit, UserError> {
+    let edit = GroundFile::read(name)?.edit()?;
+    edit.ok_or_else(|| {
+        UserError::usage("a running rig takes no picture as ground")
+            .at(name)
+            .help(
+                "close it: `maulstick painting import FILE PICTURE --as ground`; or begin with it: \
+                 `maulstick up --ground PICTURE`",
+            )
     })
 }

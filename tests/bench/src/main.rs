@@ -13,20 +13,16 @@
 //! | [`looks`] | `looks`: films, relief and streaks of strokes |
 //! | [`measurements`] | tables of measurements (`docs/measurements`) |
 //! | [`optics`] | `optics`: colours of few wavelengths compared with all; films on both backends compared with a copy |
-//! | [`advection`] | `paint`: the advection alone, compared with a copy |
 //! | [`paint`] | `paint`: steps of the paint model alone, compared with a copy |
 //! | [`pen`] | `pen`: a pen's sample to the brush node, through the window and through the HID daemon |
 //! | [`recording`] | `recording`: a recording of ten minutes, opened and sought in, compared with the `mcap` crate's reader |
 //! | [`render`] | `render`: the 30 s recording, offline |
 //! | [`report`] | rows and their table |
-//! | [`stokes`] | `paint`: the solver of Stokes Paint alone |
 //! | [`tails`] | `render`: work besides the steps, as shares |
-//! | [`texels`] | `paint`: dAb's stroking algorithms alone |
 //! | [`thread_cpu`] | time of the processor |
 //! | [`view`] | `view`: frames of the whole desk without a window |
 //! | [`window`] | `window`: memory of the window |
 
-mod advection;
 mod brush;
 mod bus;
 mod document;
@@ -45,9 +41,7 @@ mod recording;
 mod render;
 mod report;
 mod running;
-mod stokes;
 mod tails;
-mod texels;
 mod thread_cpu;
 mod view;
 mod window;
@@ -60,7 +54,7 @@ use maulstick_tool_options::bench::{BACKEND, BenchGroup, BenchOptions};
 use crate::measurements::Measurements;
 use crate::report::Report;
 
-/// The command that this program carries out.
+/// Benchmarks of Maulstick and of its peers
 #[derive(Parser)]
 #[command(name = "maulstick", version)]
 struct Line {

@@ -6,7 +6,7 @@ use kurbo::{Affine, BezPath, PathEl, Point, flatten};
 use maulstick_device::Take;
 use maulstick_motion::{Outline, strokes};
 use maulstick_rig::UserError;
-use maulstick_tables::{HeadingLine, Separator, Table, TableError, decode};
+use maulstick_tables::{Fault, HeadingLine, Separator, Table, TableError, decode};
 use usvg::tiny_skia_path::PathSegment;
 use usvg::{Group, Node, Options, Tree};
 
@@ -33,11 +33,11 @@ pub(crate) fn read_outline(path: &Path, head_m: f64) -> Result<Outline, UserErro
     let contours = if bytes.starts_with(MCAP) {
         of_take(&Take::read(path)?, head_m)
     } else {
-        of_text(&bytes).map_err(|(place, what, help)| {
-            let line = place.map_or_else(String::new, |line| format!(":{line}"));
-            UserError::usage(what)
-                .at(format!("{}{line}", path.display()))
-                .help(help)
+        of_text(&bytes).map_err(|error| {
+            let line = error.line().map(|line| format!(":{line}"));
+            UserError::usage(error.to_string())
+                .at(format!("{}{}", path.display(), line.unwrap_or_default()))
+                .help(error.help())
         })?
     };
     Outline::new(&contours).map_err(refused(path))
@@ -52,33 +52,75 @@ fn of_take(take: &Take, head_m: f64) -> Contours {
     strokes(&take.samples, head_m).iter().map(contour).collect()
 }
 
-/// Line, fault and advice.
-type Fault = (Option<usize>, String, &'static str);
+/// Reason why a file is no outline.
+#[derive(Debug, thiserror::Error)]
+enum OutlineError {
+    /// More than [`LARGEST`].
+    #[error("the outline has more than 64 MB")]
+    TooLarge,
+    /// Bytes that are no text.
+    #[error("this is no outline")]
+    NoText,
+    /// A text that begins as SVG does.
+    #[error(transparent)]
+    Svg(#[from] usvg::Error),
+    /// An SVG file with none.
+    #[error("it holds no shape")]
+    NoShape,
+    /// A table that is none of numbers.
+    #[error("{}", .0.what())]
+    Table(#[from] TableError),
+    /// A line that may be read in two ways.
+    #[error("two points on a line, or one with decimal commas?")]
+    TwoPoints(usize),
+    /// A table of nothing.
+    #[error("it has no points")]
+    NoPoints,
+}
 
-/// Advice on a table that is no outline.
-const LINE: &str = "each line is: x,y in mm; or name an SVG file, or a take";
-
-fn of_text(bytes: &[u8]) -> Result<Contours, Fault> {
-    let fault = |what: &str, help: &'static str| (None, what.to_owned(), help);
-    if bytes.len() > LARGEST {
-        let help = "leave out what is no outline";
-        return Err(fault("the outline has more than 64 MB", help));
+impl OutlineError {
+    /// Line of a table, from 1.
+    fn line(&self) -> Option<usize> {
+        match self {
+            Self::Table(error) => Some(error.line),
+            Self::TwoPoints(line) => Some(*line),
+            _ => None,
+        }
     }
-    let text = decode(bytes).map_err(|_| {
-        let help = "name an SVG file, a take or a table of x,y";
-        fault("this is no outline", help)
-    })?;
+
+    /// Advice to a user.
+    fn help(&self) -> &'static str {
+        match self {
+            Self::TooLarge => "leave out what is no outline",
+            Self::NoText => "name an SVG file, a take or a table of x,y",
+            Self::Svg(_) | Self::NoShape => "save it as plain SVG with a path or a polygon",
+            Self::TwoPoints(_) => "write a point a line, as x;y",
+            Self::Table(error) if matches!(error.fault, Fault::TwoReadings { .. }) => {
+                error.fault.help()
+            }
+            Self::Table(_) | Self::NoPoints => {
+                "each line is: x,y in mm; or name an SVG file, or a take"
+            }
+        }
+    }
+}
+
+fn of_text(bytes: &[u8]) -> Result<Contours, OutlineError> {
+    if bytes.len() > LARGEST {
+        return Err(OutlineError::TooLarge);
+    }
+    let text = decode(bytes).map_err(|_| OutlineError::NoText)?;
     let text = text.trim_start_matches('\u{feff}');
     if text.trim_start().starts_with('<') {
-        of_svg(text).map_err(|error| (None, error, "save it as plain SVG with a path or a polygon"))
+        of_svg(text)
     } else {
         of_table(text)
     }
 }
 
 /// The shapes of an SVG file. The middle of its page is the middle of the desk, and a CSS pixel is 1/96 inch.
-fn of_svg(text: &str) -> Result<Contours, String> {
-    let tree = Tree::from_str(text, &Options::default()).map_err(|error| error.to_string())?;
+fn of_svg(text: &str) -> Result<Contours, OutlineError> {
+    let tree = Tree::from_str(text, &Options::default())?;
     let (width, height) = (
         f64::from(tree.size().width()),
         f64::from(tree.size().height()),
@@ -89,7 +131,7 @@ fn of_svg(text: &str) -> Result<Contours, String> {
     let mut contours = Contours::new();
     shapes(tree.root(), to_desk, &mut contours);
     if contours.is_empty() {
-        Err("it holds no shape".to_owned())
+        Err(OutlineError::NoShape)
     } else {
         Ok(contours)
     }
@@ -143,25 +185,17 @@ fn polygons(path: &BezPath, contours: &mut Contours) {
 }
 
 /// A table of x,y in mm from the middle of the desk, y up; an empty line begins another contour.
-fn of_table(text: &str) -> Result<Contours, Fault> {
-    let fault = |error: TableError| {
-        let help = match error.fault {
-            maulstick_tables::Fault::TwoReadings { .. } => error.fault.help(),
-            _ => LINE,
-        };
-        (Some(error.line), error.what(), help)
-    };
-    let table = Table::parse(text, HeadingLine::Words).map_err(fault)?;
+fn of_table(text: &str) -> Result<Contours, OutlineError> {
+    let table = Table::parse(text, HeadingLine::Words)?;
     let mut contours = Contours::new();
     let mut block = None;
     for row in table.rows() {
         // SVG writes points as x,y x,y.
         let is_pair = |cell: &str| cell.contains(',');
         if table.separator() == Separator::Blanks && row.cells().all(is_pair) {
-            let what = "two points on a line, or one with decimal commas?".to_owned();
-            return Err((Some(row.line()), what, "write a point a line, as x;y"));
+            return Err(OutlineError::TwoPoints(row.line()));
         }
-        let point = row.numbers::<2>().map_err(fault)?.map(|mm| 1e-3 * mm);
+        let point = row.numbers::<2>()?.map(|mm| 1e-3 * mm);
         if block.replace(row.block()) != Some(row.block()) {
             contours.push(Vec::new());
         }
@@ -170,7 +204,7 @@ fn of_table(text: &str) -> Result<Contours, Fault> {
         }
     }
     if contours.is_empty() {
-        Err((None, "it has no points".to_owned(), LINE))
+        Err(OutlineError::NoPoints)
     } else {
         Ok(contours)
     }
@@ -235,13 +269,13 @@ mod tests {
             );
         }
         for text in ["0,0\n10\n", "0,0\n10,x\n", "0,0\n1,2,3\n"] {
-            let (line, ..) = of_text(text.as_bytes()).expect_err(text);
-            assert_eq!(line, Some(2), "{text:?}");
+            let error = of_text(text.as_bytes()).expect_err(text);
+            assert_eq!(error.line(), Some(2), "{text:?}");
         }
-        let (line, ..) = of_text(b"x,y\n0,0\n10,0\n1 1\n").expect_err("two separators");
-        assert_eq!(line, Some(4));
-        let (line, ..) = of_text(b"10,20 30,40\n").expect_err("two readings");
-        assert_eq!(line, Some(1));
+        let error = of_text(b"x,y\n0,0\n10,0\n1 1\n").expect_err("two separators");
+        assert_eq!(error.line(), Some(4));
+        let error = of_text(b"10,20 30,40\n").expect_err("two readings");
+        assert_eq!(error.line(), Some(1));
         assert!(of_text(b"\xff\xfe").is_err());
     }
 }

@@ -295,8 +295,9 @@ mod tests {
             assert!(matches(white, typed), "{typed}");
         }
         assert!(!matches(white, "blue"));
-        let cover = words(white);
-        assert!(cover.contains("is opaque ("), "{cover}");
+        let (cover, percent) = (words(white), (100.0 * covers(white)).round());
+        let opaque = tr!("opaque ({percent} %)", percent);
+        assert!(percent >= 80.0 && cover.contains(&opaque), "{cover}");
         let quinacridone = words(find("Quinacridone Magenta"));
         assert!(quinacridone.contains("transparent"), "{quinacridone}");
         assert!(words(find("Thinner")).contains("thins"));

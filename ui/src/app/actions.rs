@@ -3,6 +3,7 @@
 use eframe::egui::{self, Color32, Context, Event, Stroke};
 use glam::{DVec2, DVec3};
 use maulstick_brush::palette_place::{Side, beside, is_out, is_same, mirrored, over, size_m};
+use maulstick_painting::edits::common;
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 
 use maulstick_window_pen::mouse::Pointer;
@@ -10,7 +11,6 @@ use maulstick_window_pen::mouse::Pointer;
 use super::{App, STILL};
 use crate::input::keys::Action;
 use crate::input::navigation::{Around, is_panel, place};
-use crate::panels::desk_edits;
 use crate::settings::preferences::Preferences;
 use crate::view::camera::View;
 use crate::view::fit_crosses;
@@ -95,7 +95,7 @@ impl App {
             Some((plane.id, [at.x, at.y]))
         });
         let thinner = self.studio.preferences.brushes.loading.share();
-        let load = under.map(|place| desk_edits::load_from(name, place, thinner));
+        let load = under.map(|place| common::load_from(name, place, thinner));
         match load {
             Some(Ok(load)) => self.studio.requests.send(load),
             _ => self.studio.notifications.fault(
@@ -119,7 +119,7 @@ impl App {
         } else {
             over(canvas, palette)
         };
-        if let Ok(edit) = desk_edits::lay_palette(pose, palette.zoom) {
+        if let Ok(edit) = common::lay_palette(pose, palette.zoom) {
             self.studio.requests.send(edit);
         }
     }
@@ -260,8 +260,8 @@ impl App {
         };
         let wells = mirrored(&palette.wells, size_m(palette));
         if let (Ok(laid), Ok(wells)) = (
-            desk_edits::lay_palette(pose, palette.zoom),
-            desk_edits::lay_wells(wells),
+            common::lay_palette(pose, palette.zoom),
+            common::lay_wells(wells),
         ) {
             self.studio.requests.send(laid);
             self.studio.requests.send(wells);

@@ -7,7 +7,9 @@ mod help_pages;
 mod table_of_keys;
 
 use eframe::egui::{self, Context, Rect, Ui};
+use maulstick_painting::edits::common;
 use maulstick_types::scene::Light;
+use maulstick_types::values::Share;
 
 use maulstick_client::dispatcher::Outcome;
 
@@ -24,7 +26,6 @@ use crate::input::size_drag::SizeDrag;
 use crate::matching::colour_window::ColourWindow;
 use crate::motions::Motions;
 use crate::panels;
-use crate::panels::desk_edits;
 use crate::panels::history::outcome_words;
 use crate::panels::light::lamp_undo::LampUndo;
 use crate::reference::Reference;
@@ -214,19 +215,19 @@ impl Overlay {
         match act {
             Action::Undo => match self.lamp_undo.undo(work.rig) {
                 Some(light) => relight(work, light),
-                None => work.requests.send(desk_edits::undo()),
+                None => work.requests.send(common::undo()),
             },
             Action::Redo => match self.lamp_undo.redo(work.rig) {
                 Some(light) => relight(work, light),
-                None => work.requests.send(desk_edits::redo()),
+                None => work.requests.send(common::redo()),
             },
-            Action::Dry => work.requests.send(desk_edits::dry()),
-            Action::Scrape => work.requests.send(desk_edits::scrape()),
+            Action::Dry => work.requests.send(common::dry(Share::WHOLE)),
+            Action::Scrape => work.requests.send(common::scrape()),
             Action::Smaller => work.step_width(false),
             Action::Larger => work.step_width(true),
             Action::NextBrush => work.next_brush(),
             Action::Clean => {
-                let clean = desk_edits::clean(work.rig.brush_name());
+                let clean = common::clean(work.rig.brush_name());
                 ask(work, clean);
             }
             Action::ForceOff => panels::device::force_off(work),
@@ -357,7 +358,7 @@ fn follow_mouse(act: Action, work: &mut PanelContext<'_>) -> bool {
 
 /// Brings back a light that undo or redo leads to.
 fn relight(work: &mut PanelContext<'_>, light: Light) {
-    work.requests.send(desk_edits::relight(light));
+    work.requests.send(common::relight(light));
     work.notifications
         .note(tr!("The light is as it was").to_owned());
 }

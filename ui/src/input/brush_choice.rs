@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use maulstick_brush::{BrushError, BrushFile};
+use maulstick_painting::edits::common;
 use maulstick_rig::UserError;
 use maulstick_rig::files::ending;
 use maulstick_types::Mixture;
@@ -18,7 +19,6 @@ use maulstick_client::dispatcher::Outcome;
 use maulstick_client::request::Request;
 use maulstick_types::values::Quantity;
 
-use crate::panels::desk_edits;
 use crate::rig::state::{BrushContact, RigBrush};
 use crate::settings::brush_library::{called, is_of_library, library, of_library};
 use crate::settings::brush_load::{BrushLoad, written};
@@ -206,8 +206,9 @@ impl PanelContext<'_> {
     /// command that waited for it.
     pub(crate) fn brush_answered(&mut self, outcome: &Outcome) {
         if let Request::Command { command, .. } = &outcome.request
+            && let Command::Edit(edit) = command
             && outcome.result.is_ok()
-            && let Some((brush, mixture, beside)) = desk_edits::loaded(command)
+            && let Some((brush, mixture, beside)) = common::loaded(edit)
         {
             return self.loaded(command, &brush, (&mixture, beside.as_ref()));
         }
@@ -263,7 +264,7 @@ impl PanelContext<'_> {
                 stiffness: before.stiffness,
                 wetness: before.wetness,
             };
-            if let Ok(tune) = desk_edits::tune(&tuning) {
+            if let Ok(tune) = common::tune(&tuning) {
                 self.requests.send(tune);
             }
         }
@@ -271,7 +272,7 @@ impl PanelContext<'_> {
             most_m: 0.0,
             ..handling
         };
-        if let (true, Ok(handle)) = (is_limited, desk_edits::handle(&unlimited)) {
+        if let (true, Ok(handle)) = (is_limited, common::handle(&unlimited)) {
             self.requests.send(handle);
         }
         self.notifications.note(words);

@@ -1,10 +1,10 @@
 //! The cleaning key: a tap cleans the brush; while it is held the brush lifts paint.
 
+use maulstick_painting::edits::common;
 use maulstick_types::scene::{BrushHandling, BrushMode};
 
 use maulstick_client::request::Request;
 
-use crate::panels::desk_edits;
 use crate::rig::requests::Requests;
 
 /// Longest press that counts as a tap, s.
@@ -44,7 +44,7 @@ impl CleanKey {
                     ..
                 }) => handle(requests, &handling),
                 Some(Down { brush, .. }) => {
-                    if let Ok(clean) = desk_edits::clean(&brush) {
+                    if let Ok(clean) = common::clean(&brush) {
                         requests.send(clean);
                     }
                 }
@@ -82,7 +82,7 @@ impl CleanKey {
 
 /// Uses a brush so.
 fn handle(requests: &mut Requests, handling: &BrushHandling) {
-    if let Ok(edit) = desk_edits::handle(handling) {
+    if let Ok(edit) = common::handle(handling) {
         requests.send(edit);
     }
 }

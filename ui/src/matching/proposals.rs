@@ -1,9 +1,9 @@
 //! Rows of proposed mixtures: the distance of each, and its actions.
 
 use eframe::egui::{self, Color32, Role, Sense, StrokeKind, Ui, WidgetInfo, vec2};
+use maulstick_painting::edits::common;
 
 use crate::matching::picker::{Match, Matches};
-use crate::panels::desk_edits;
 use crate::widgets::context::PanelContext;
 
 /// Shows the results of a search; a spinner while it runs.
@@ -42,7 +42,7 @@ fn proposal(ui: &mut Ui, found: &Match, work: &mut PanelContext<'_>) {
             .on_hover_text(tr!("Load the brush with it"));
         load.widget_info(|| WidgetInfo::labeled(Role::Button, true, tr!("Load {words}", words)));
         if load.clicked() {
-            let load = desk_edits::load(work.rig.brush_name(), found.mixture.clone(), None);
+            let load = common::load(work.rig.brush_name(), found.mixture.clone(), None);
             crate::widgets::context::ask(work, load);
         }
         let put = ui.button("+").on_hover_text(tr!("Put it on the palette"));

@@ -125,11 +125,9 @@ fn a_motion_is_chosen_by_its_picture_and_follows_the_pointer_then() {
     harness.run_steps(3);
     let bench = harness.state();
     assert!(bench.overlay.motions.is_placing() && !bench.overlay.motions.is_open());
-    assert!(
-        bench.told().contains("the wheel scales it"),
-        "{}",
-        bench.told()
-    );
+    let shown = bench.notifications.shown().iter();
+    let severities: Vec<_> = shown.map(|toast| toast.severity).collect();
+    assert_eq!(severities, [Severity::Note], "{}", bench.told());
     assert_eq!(bench.preferences.motions.as_deref(), Some(folder.path()));
 }
 

@@ -10,7 +10,7 @@
 //! | [`history`] | undo, redo, versions |
 //! | [`device`] | styluses and their force |
 //!
-//! [`desk_edits`] has the edits that keys, gestures and dialogs ask for.
+//! Edits that keys, gestures and dialogs ask for are in [`common`](maulstick_painting::edits::common).
 
 use eframe::egui::Ui;
 
@@ -40,7 +40,6 @@ pub(crate) fn all() -> Vec<Box<dyn Panel>> {
 
 pub(crate) mod brush;
 pub(crate) mod canvas;
-pub(crate) mod desk_edits;
 pub(crate) mod device;
 pub(crate) mod history;
 pub(crate) mod layers;

@@ -285,7 +285,8 @@ fn a_recording_is_chosen_and_played_once() {
     assert!(harness.query_by_label("sea.mcap").is_none());
     harness.state_mut().rig.replay = Some(replay(false));
     ctrl(&mut harness, Key::P, Modifiers::NONE);
-    assert!(harness.state().told().contains("is being played"));
+    let told = shown(&harness.state().notifications);
+    assert!(matches!(&told[..], [(Severity::Fault, _)]), "{told:?}");
 }
 
 #[test]
@@ -370,7 +371,7 @@ fn keys_are_the_bars_while_a_session_is_painted_again_and_else_where_they_are_fr
     }
     press(&mut harness, Key::Period);
     assert_eq!(orders(&mut harness), []);
-    assert!(harness.state().told().contains("Brush turned"));
+    assert!(harness.state().told().contains("15°"));
     harness.state_mut().rig.replay = None;
     press(&mut harness, Key::ArrowLeft);
     assert_eq!(orders(&mut harness), []);

@@ -1,13 +1,12 @@
 //! Load of a brush: a paint or mixture, another one beside it, and thinner in both.
 
 use maulstick_optics::{PaintLibrary, THINNER, thinned};
+use maulstick_painting::edits::common;
 use maulstick_rig::UserError;
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 use maulstick_types::values::ThinnerShare;
 use serde::{Deserialize, Serialize};
-
-use crate::panels::desk_edits;
 
 /// Load of a brush.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -44,7 +43,7 @@ impl BrushLoad {
         let mixture = self.mixture(&self.paint, library)?;
         let beside = self.beside.as_ref();
         let beside = beside.map(|other| self.mixture(other, library));
-        Ok(desk_edits::load(brush, mixture, beside.transpose()?)?)
+        Ok(common::load(brush, mixture, beside.transpose()?)?.into())
     }
 }
 
@@ -143,7 +142,10 @@ mod tests {
     fn a_load_is_one_mixture_or_two_and_thinned() {
         let loaded = |loading: BrushLoad| {
             let command = loading.command("main", &library()).expect("paints");
-            desk_edits::loaded(&command).expect("a load")
+            let Command::Edit(edit) = command else {
+                panic!("{command:?}")
+            };
+            common::loaded(&edit).expect("a load")
         };
         let pure = loaded(loading("cobalt blue", None, 0.0));
         let expected = ("main".to_owned(), Mixture::pure("Cobalt Blue"), None);

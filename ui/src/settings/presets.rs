@@ -1,13 +1,13 @@
 //! Presets: brushes with their paint, by name.
 
 use maulstick_brush::BrushFile;
+use maulstick_painting::edits::common;
 use maulstick_rig::UserError;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{BrushHandling, MARKER_FLOW, Tuning};
 use maulstick_ui_kit::units::Units;
 use serde::{Deserialize, Serialize};
 
-use crate::panels::desk_edits;
 use crate::settings::brush_library::{called, of_library};
 use crate::settings::brush_load::BrushLoad;
 
@@ -188,8 +188,8 @@ impl Preset {
     /// # Errors
     /// A [`UserError`] where a number is out of range, or there is no such mode.
     pub(crate) fn edits(&self, brush: &str) -> Result<[Command; 2], UserError> {
-        let tune = desk_edits::tune(&self.tuning(brush))?;
-        Ok([tune, desk_edits::handle(&self.handling(brush)?)?])
+        let tune = common::tune(&self.tuning(brush))?.into();
+        Ok([tune, common::handle(&self.handling(brush)?)?.into()])
     }
 }
 

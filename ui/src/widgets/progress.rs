@@ -4,13 +4,13 @@
 use std::collections::BTreeMap;
 
 use eframe::egui::{Align2, Area, Context, Frame, Id, Order, ProgressBar, Ui};
+use maulstick_painting::edits::common;
 use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::Light;
 
 use maulstick_client::request::Peer;
 
-use crate::panels::desk_edits;
 use crate::rig::state::RigState;
 use crate::widgets::context::PanelContext;
 
@@ -146,7 +146,7 @@ impl Progress {
         let begun_ns = begun_ns.copied().unwrap_or(rig.live.now_ns);
         // Otherwise a layer has another opacity.
         let is_relit = self.stood_ns.saturating_add(STOOD_NS) >= begun_ns;
-        let back = |light: &Light| Cancel::Paint(Box::new(desk_edits::relight(light.clone())));
+        let back = |light: &Light| Cancel::Paint(Box::new(common::relight(light.clone()).into()));
         (status.baked < status.baking).then(|| Job {
             kind: Kind::Relighting,
             words: if is_relit {
@@ -206,7 +206,7 @@ fn drying(rig: &RigState) -> Option<Job> {
             tr!("Drying “{layer}”", layer = drying.layer)
         },
         share: Some(f64::from(drying.share)),
-        cancel: Some(Cancel::Paint(Box::new(desk_edits::stop_drying()))),
+        cancel: Some(Cancel::Paint(Box::new(common::stop_drying().into()))),
         hint: tr!("What is wet still stays wet"),
     })
 }
@@ -355,7 +355,7 @@ mod tests {
         let asked = harness.state_mut().requests.take();
         let back = Asked::Command {
             node: "paint".into(),
-            command: desk_edits::relight(scene.light),
+            command: common::relight(scene.light).into(),
         };
         assert_eq!(asked, [back]);
         harness.state_mut().baked(40.0, 100);

@@ -5,13 +5,18 @@ use std::sync::Arc;
 
 use maulstick_appearance::ground::add_spectrum;
 use maulstick_canvas::assets::{IMAGE, SPECTRUM};
+use maulstick_canvas::store::TileStore;
 use maulstick_exchange::{Image, PictureKind, embed};
 use maulstick_optics::Reflectance;
-use maulstick_painting::PaintingSetup;
+use maulstick_painting::edits::common;
+use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_rig::UserError;
 use maulstick_rig::config::is_path;
 use maulstick_rig::log::say;
 use maulstick_rig::table_file::read_table;
+use maulstick_types::Edit;
+use maulstick_types::scene::CANVAS;
+use maulstick_types::values::ValueError;
 
 use crate::refusal::refused;
 use crate::surface::picture::{no_picture, open_picture};
@@ -59,11 +64,34 @@ impl GroundFile {
         Ok(Self::Spectrum(text))
     }
 
+    /// The edit that makes it the ground of the canvas; none for a picture, which the painting has to hold.
+    ///
+    /// # Errors
+    /// [`ValueError`] for a name or a text that is too long.
+    pub fn edit(&self) -> Result<Option<Edit>, ValueError> {
+        Ok(match self {
+            Self::Named(name) => Some(common::ground(name)?.into()),
+            Self::Spectrum(text) => Some(common::measured_ground(text)?.into()),
+            Self::Picture(..) => None,
+        })
+    }
+
+    /// Adds a picture to a painting, and returns the edit that makes it the ground of the canvas.
+    ///
+    /// # Errors
+    /// A [`UserError`] if the canvas is too large for it.
+    pub fn embed(&self, painting: &mut Painting) -> Result<Edit, UserError> {
+        let cells = painting.store(CANVAS).map_or([1, 1], TileStore::cells);
+        let bytes = self.picture(cells)?.unwrap_or_default();
+        let hash = painting.embed(bytes).map_err(refused)?;
+        Ok(common::ground(&format!("{IMAGE}{hash}"))?.into())
+    }
+
     /// A picture for surfaces with this number of cells, a PNG; `None` if it is no picture.
     ///
     /// # Errors
     /// A [`UserError`] if the surface is too large for it.
-    pub fn picture(&self, cells: [u32; 2]) -> Result<Option<Arc<[u8]>>, UserError> {
+    fn picture(&self, cells: [u32; 2]) -> Result<Option<Arc<[u8]>>, UserError> {
         let Self::Picture(image, name) = self else {
             return Ok(None);
         };

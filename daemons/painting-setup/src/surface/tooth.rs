@@ -5,8 +5,12 @@ use std::sync::Arc;
 
 use maulstick_canvas::relief::tooth_picture::{DEPTH_UM, ToothName, WIDTH_MM};
 use maulstick_exchange::{Image, PictureKind, embed};
+use maulstick_painting::Painting;
+use maulstick_painting::edits::common;
 use maulstick_rig::UserError;
+use maulstick_types::Edit;
 
+use crate::refusal::refused;
 use crate::surface::picture::{no_picture, open_picture};
 
 /// Default depth of a tooth, µm.
@@ -19,7 +23,7 @@ pub struct ToothPicture {
     file: String,
     width_mm: Option<f64>,
     /// From white to black, µm.
-    pub depth_um: f64,
+    depth_um: f64,
 }
 
 impl ToothPicture {
@@ -76,30 +80,24 @@ impl ToothPicture {
         )
     }
 
-    /// Its width on a canvas of `cells` of `cell_m`, mm.
-    fn width_on(&self, cells: [u32; 2], cell_m: f64) -> f64 {
-        self.width_mm.unwrap_or(f64::from(cells[0]) * cell_m * 1e3)
-    }
-
-    /// The PNG that a painting with such a canvas holds.
+    /// Adds it to a painting, and returns the edit that makes it the tooth of the canvas.
     ///
     /// # Errors
     /// A [`UserError`] where the picture is too large for it.
-    pub fn png(&self, cells: [u32; 2], cell_m: f64) -> Result<Arc<[u8]>, UserError> {
-        let width_mm = self.width_on(cells, cell_m);
-        embed::tooth(&self.image, width_mm, cell_m)
-            .map_err(|error| no_picture(self.file.as_ref(), &error))
-    }
-
-    /// The tooth's name where the painting holds it by this hash.
-    #[must_use]
-    pub fn name(&self, hash: String, cells: [u32; 2], cell_m: f64) -> String {
+    pub fn embed(&self, painting: &mut Painting) -> Result<Edit, UserError> {
+        let canvas = &painting.scene().surfaces[0];
+        let cell_m = canvas.cell_m;
+        let width_mm = self
+            .width_mm
+            .unwrap_or(f64::from(canvas.cells[0]) * cell_m * 1e3);
+        let bytes = embed::tooth(&self.image, width_mm, cell_m)
+            .map_err(|error| no_picture(self.file.as_ref(), &error))?;
         let name = ToothName {
-            hash,
-            width_mm: self.width_on(cells, cell_m),
+            hash: painting.embed(bytes).map_err(refused)?,
+            width_mm,
             depth_um: self.depth_um,
         };
-        name.to_string()
+        Ok(common::tooth(name.to_string())?.into())
     }
 }
 

@@ -4,7 +4,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use maulstick_appearance::light::changes_colour;
 use maulstick_bus::Qos;
-use maulstick_painting::edits::{Exposure, LightChange, Relight};
+use maulstick_painting::edits::{Exposure, LightChange, common};
 use maulstick_rig::UserError;
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::{Light, Scene};
@@ -54,7 +54,11 @@ pub(super) fn run(options: &LightOptions) -> Result<i32, UserError> {
     };
     if light != before || expose {
         let mut statuses = client.follow(&client.topics().paint_status(), Qos::Background)?;
-        client.send(Relight { light, expose })?;
+        client.send(if expose {
+            common::relight_exposed(light)
+        } else {
+            common::relight(light)
+        })?;
         wait_for_baking(&mut statuses, client.now_ns())?;
         light = scenes.wait_for_next()?.message.light;
     } else {

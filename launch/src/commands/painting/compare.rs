@@ -5,7 +5,7 @@ use std::path::Path;
 use maulstick_appearance::picture::Picture;
 use maulstick_document::DocumentError;
 use maulstick_optics::colour::{RgbSpace, apply, delta_e_2000, lab, srgb_decode};
-use maulstick_painting::edits::{ReturnTo, Undo};
+use maulstick_painting::edits::common;
 use maulstick_painting::picture::picture;
 use maulstick_painting::{NOW, Sequencer};
 use maulstick_rig::UserError;
@@ -93,11 +93,12 @@ fn seen(sequencer: &mut Sequencer, version: &str) -> Result<Picture, UserError> 
     let is_now = version == NOW;
     if !is_now {
         let name = VersionName::new(version)?;
-        sequencer.edit(ReturnTo { name }).map_err(refused)?;
+        let back = common::return_to(name);
+        sequencer.edit(back).map_err(refused)?;
     }
     let seen = picture(sequencer.painting_mut(), CANVAS);
     if !is_now {
-        sequencer.edit(Undo { brush: None }).map_err(refused)?;
+        sequencer.edit(common::undo()).map_err(refused)?;
     }
     Ok(seen)
 }

@@ -8,11 +8,12 @@ use clap::builder::PossibleValuesParser;
 use maulstick_document::DocumentError;
 use maulstick_models::{model_called, model_names};
 use maulstick_num::fork_join::with_cores_beyond;
-use maulstick_painting::edits::Convert;
+use maulstick_painting::edits::common;
 use maulstick_painting::{Applied, EditError, SurfaceError};
 use maulstick_rig::files::{Kind, check_writable};
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::Autosave;
+use maulstick_types::Edit;
 use maulstick_types::scene::{CANVAS, PALETTE};
 use maulstick_types::values::ModelName;
 
@@ -64,11 +65,9 @@ pub(super) fn run(options: &ConvertOptions) -> Result<i32, UserError> {
         .map_err(|error| UserError::writing(output, &error))?;
     let part = folder.path().join("converted.maul");
     copy_closed(path, &part)?;
-    let edit = Convert {
-        model: ModelName::new(model.name).map_err(|error| refuse(error.into()))?,
-        surface,
-    };
-    let applied = converted(&part, edit, output)?.map_err(refuse)?;
+    let name = ModelName::new(model.name).map_err(|error| refuse(error.into()))?;
+    let edit = common::convert(surface, name);
+    let applied = converted(&part, edit.into(), output)?.map_err(refuse)?;
     place(&part, output)?;
     say!("written   {}", output.display());
     say!("          {applied}");
@@ -78,7 +77,7 @@ pub(super) fn run(options: &ConvertOptions) -> Result<i32, UserError> {
 /// Converts a painting in its file, unless the painting refuses it.
 fn converted(
     part: &Path,
-    edit: Convert,
+    edit: Edit,
     output: &Path,
 ) -> Result<Result<Applied, EditError>, UserError> {
     let (document, mut sequencer, since) = go_on(&RigConfig::default(), part)?;

@@ -1,19 +1,19 @@
 //! `maulstick painting import`: a picture as underpainting, as ground or as tooth.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
 use maulstick_exchange::underpaint::{MOST_PAINTS, underpaint};
-use maulstick_exchange::{ColourError, Image, ImportError, Support, embed};
-use maulstick_painting::edits::{Ground, Tooth};
+use maulstick_exchange::{ColourError, Image, ImportError, Support};
 use maulstick_painting::{Painting, Sequencer, Wetness};
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::Autosave;
 use maulstick_types::scene::{CANVAS, WellKind};
-use maulstick_types::values::MaterialName;
 
 use maulstick_painting_setup::document::{go_on, there, wrong};
 use maulstick_painting_setup::refused;
+use maulstick_painting_setup::surface::ground::GroundFile;
 use maulstick_painting_setup::surface::picture::{no_picture, open_picture};
 use maulstick_painting_setup::surface::tooth::{DEPTH, ToothPicture};
 
@@ -76,7 +76,7 @@ pub(super) fn run(options: &ImportOptions) -> Result<i32, UserError> {
     let autosave = Autosave::new(document, &mut sequencer, since);
     let done = match options.purpose {
         Purpose::Underpainting => options.paint(&mut sequencer, &image),
-        Purpose::Ground => options.ground(&mut sequencer, &image),
+        Purpose::Ground => options.ground(&mut sequencer, image),
         Purpose::Tooth => options.tooth(&mut sequencer, image),
     };
     let closed = autosave.close(&mut sequencer);
@@ -129,11 +129,9 @@ impl ImportOptions {
         ))
     }
 
-    fn ground(&self, sequencer: &mut Sequencer, image: &Image) -> Result<String, UserError> {
-        let cells = sequencer.painting().scene().surfaces[0].cells;
-        let bytes = embed::ground(image, cells).map_err(|error| self.fault(&error))?;
-        let hash = sequencer.painting_mut().embed(bytes).map_err(refused)?;
-        let ground = Ground::named(CANVAS, &format!("image:{hash}"))?;
+    fn ground(&self, sequencer: &mut Sequencer, image: Image) -> Result<String, UserError> {
+        let picture = GroundFile::Picture(Arc::new(image), self.picture.display().to_string());
+        let ground = picture.embed(sequencer.painting_mut())?;
         sequencer.edit(ground).map_err(refused)?;
         Ok("the picture is its ground".to_owned())
     }
@@ -142,15 +140,7 @@ impl ImportOptions {
         let file = self.picture.display().to_string();
         let picture = ToothPicture::new(image, &file, self.width_mm, self.depth_um)
             .map_err(|fault| fault.at("--width-mm, --depth-um"))?;
-        let canvas = &sequencer.painting().scene().surfaces[0];
-        let (cells, cell_m) = (canvas.cells, canvas.cell_m);
-        let bytes = picture.png(cells, cell_m)?;
-        let hash = sequencer.painting_mut().embed(bytes).map_err(refused)?;
-        let tooth = Tooth {
-            tooth: MaterialName::new(picture.name(hash, cells, cell_m))?,
-            seed: 1,
-            surface: CANVAS,
-        };
+        let tooth = picture.embed(sequencer.painting_mut())?;
         sequencer.edit(tooth).map_err(refused)?;
         let depth_um = self.depth_um;
         Ok(format!("the picture is its tooth, {depth_um} µm deep"))

@@ -4,11 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick_bus::Qos;
-use maulstick_painting::edits::{Branch, Forget, Keep, ReturnTo};
+use maulstick_painting::edits::versions::VersionOptions;
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_types::Edit;
 use maulstick_types::scene::{NamedVersion, Scene};
-use maulstick_types::values::VersionName;
 use serde_json::json;
 
 use maulstick_painting_setup::document::{go_on, there, wrong};
@@ -24,18 +23,8 @@ use super::compare::compare;
 pub struct VersionsOptions {
     /// Painting [default: that of the running rig]
     file: Option<PathBuf>,
-    /// Keep the painting as a version of this name
-    #[arg(long, value_name = "NAME", group = "act")]
-    keep: Option<VersionName>,
-    /// Return the painting to a version; this can be undone
-    #[arg(long = "return", value_name = "NAME", group = "act")]
-    return_to: Option<VersionName>,
-    /// Begin version NAME from version FROM, and return the painting to it
-    #[arg(long, value_names = ["FROM", "NAME"], num_args = 2, group = "act")]
-    branch: Option<Vec<VersionName>>,
-    /// Delete a version
-    #[arg(long, value_name = "NAME", group = "act")]
-    forget: Option<VersionName>,
+    #[command(flatten)]
+    edit: VersionOptions,
     /// Draw two versions and their difference side by side; "now" is the current painting
     #[arg(long, value_names = ["ONE", "OTHER"], num_args = 2, group = "act", requires = "output", requires = "file")]
     compare: Option<Vec<String>>,
@@ -52,21 +41,7 @@ pub struct VersionsOptions {
 impl VersionsOptions {
     /// The requested edit, if any.
     pub(crate) fn edit(&self) -> Option<Edit> {
-        let name = |name: &Option<VersionName>| name.clone();
-        let keep = name(&self.keep).map(|name| Keep { name }.into());
-        let back = name(&self.return_to).map(|name| ReturnTo { name }.into());
-        let forget = name(&self.forget).map(|name| Forget { name }.into());
-        let branch = self.branch.as_deref().and_then(|names| match names {
-            [from, name] => Some(
-                Branch {
-                    from: from.clone(),
-                    name: name.clone(),
-                }
-                .into(),
-            ),
-            _ => None,
-        });
-        keep.or(back).or(forget).or(branch)
+        self.edit.edit()
     }
 }
 

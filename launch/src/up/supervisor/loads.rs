@@ -4,11 +4,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use maulstick_bus::Bus;
-use maulstick_painting::edits::Load;
+use maulstick_painting::edits::common;
 use maulstick_rig::command_client::CommandClient;
 use maulstick_rig::{RigConfig, Stop, UserError};
 use maulstick_types::Mixture;
-use maulstick_types::values::BrushName;
 use maulstick_types::wire::topics::Topics;
 use tokio::task::spawn_blocking;
 
@@ -41,12 +40,7 @@ impl Loads {
         let (mut client, stop) = (CommandClient::new(Arc::clone(bus), topics), stop.clone());
         spawn_blocking(move || {
             for brush in brushes {
-                let load = BrushName::new(brush).map(|brush| Load {
-                    mixture: mixture.clone(),
-                    beside: None,
-                    brush,
-                });
-                let loaded = load
+                let loaded = common::load(&brush, mixture.clone(), None)
                     .map_err(UserError::from)
                     .and_then(|load| client.send(load, None, LOAD_TIME, &|| stop.requested()));
                 if let Err(fault) = loaded {

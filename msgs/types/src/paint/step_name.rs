@@ -156,12 +156,40 @@ static PLAIN: [StepName; 15] = [
     StepName::Unpainted,
 ];
 
-/// Words after those of what a brush did on the palette alone.
-const ON_PALETTE: &str = " on the palette";
+/// Words after those of what a brush did, on the palette alone and elsewhere.
+static PLACES: [(&str, bool); 2] = [(" on the palette", true), ("", false)];
 
 fn place(on_palette: bool) -> &'static str {
-    if on_palette { ON_PALETTE } else { "" }
+    let [(there, _), (elsewhere, _)] = PLACES;
+    if on_palette { there } else { elsewhere }
 }
+
+/// Words before and after the text of a step that has one, and the step of such a text.
+type Form = (&'static str, &'static str, fn(&str) -> Option<StepName>);
+
+/// Forms of the steps that earlier versions had in words with a text in them.
+static FORMS: [Form; 5] = [
+    ("", " stroke", |kind| {
+        let (kind, on_palette) = (kind.to_owned(), false);
+        Some(StepName::Stroke { kind, on_palette })
+    }),
+    ("", " wipe", |kind| {
+        let (kind, on_palette) = (kind.to_owned(), false);
+        Some(StepName::Wipe { kind, on_palette })
+    }),
+    ("load ", "", |paints| {
+        let paints = paints.split(" + ").map(str::to_owned).collect();
+        Some(StepName::Load { paints })
+    }),
+    ("return to '", "'", |version| {
+        let version = version.to_owned();
+        Some(StepName::Return { version })
+    }),
+    ("", " steps", |count| {
+        let count = count.parse().ok()?;
+        Some(StepName::Merged { count })
+    }),
+];
 
 impl fmt::Display for StepName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -182,33 +210,19 @@ impl Worded for StepName {
         if let Some(name) = PLAIN.iter().find(|name| name.plain() == Some(words)) {
             return name.clone();
         }
-        let unplaced = words.strip_suffix(ON_PALETTE);
-        let on_palette = unplaced.is_some();
         // Earlier versions said it of loads and cleanings too.
-        let done = unplaced.unwrap_or(words);
-        if done == "clean brush" {
+        let mut places = PLACES.iter();
+        let placed = places.find_map(|(end, place)| Some((words.strip_suffix(end)?, *place)));
+        let (done, on_palette) = placed.unwrap_or((words, false));
+        if Self::Clean.plain() == Some(done) {
             return Self::Clean;
         }
-        if let Some(kind) = done.strip_suffix(" stroke") {
-            let kind = kind.to_owned();
-            return Self::Stroke { kind, on_palette };
-        }
-        if let Some(kind) = done.strip_suffix(" wipe") {
-            let kind = kind.to_owned();
-            return Self::Wipe { kind, on_palette };
-        }
-        if let Some(paints) = done.strip_prefix("load ") {
-            let paints = paints.split(" + ").map(str::to_owned).collect();
-            return Self::Load { paints };
-        }
-        let version = words.strip_prefix("return to '");
-        if let Some(version) = version.and_then(|rest| rest.strip_suffix('\'')) {
-            let version = version.to_owned();
-            return Self::Return { version };
-        }
-        let count = words.strip_suffix(" steps");
-        if let Some(count) = count.and_then(|count| count.parse().ok()) {
-            return Self::Merged { count };
+        let named = FORMS.iter().find_map(|(before, after, name)| {
+            let text = done.strip_prefix(before)?.strip_suffix(after)?;
+            name(text)
+        });
+        if let Some(name) = named {
+            return name.placed(on_palette);
         }
         let words = words.to_owned();
         Self::Words { words }

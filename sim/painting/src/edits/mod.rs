@@ -7,9 +7,12 @@
 //! A new edit is its file, a line in the list below, and its widget.
 
 mod applied;
+pub mod common;
 mod form;
 mod read;
 mod registry;
+#[cfg(feature = "cli")]
+pub mod versions;
 pub mod words;
 
 pub mod brush;
@@ -95,6 +98,14 @@ pub trait PaintingEdit: Debug {
     /// The mixtures of paints that it names.
     fn mixtures_mut(&mut self) -> Vec<&mut Mixture> {
         Vec::new()
+    }
+
+    /// Checks names of the libraries, as far as no painting is needed.
+    ///
+    /// # Errors
+    /// [`EditError`] for an unknown one.
+    fn check_names(&self) -> Result<(), EditError> {
+        Ok(())
     }
 
     /// Checks that all that a painter wrote has an effect.

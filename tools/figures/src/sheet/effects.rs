@@ -3,17 +3,16 @@
 use maulstick_appearance::picture::Picture;
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
-use maulstick_painting::edits::{Dry, Load};
+use maulstick_painting::edits::common;
 use maulstick_rig::UserError;
-use maulstick_types::scene::CANVAS;
-use maulstick_types::values::{BrushName, Share};
+use maulstick_types::values::Share;
 
 use maulstick_painting_setup::refused;
 use maulstick_script::paintings::Board;
 
 use super::gesture::{Gesture, Moment, swell};
 use super::marks::stroke;
-use super::{BRUSH, DEPTH_SHARE, GAP_MM, Panel, Sheet, library_brush, mixture_of};
+use super::{BRUSH, DEPTH_SHARE, GAP_MM, Panel, Sheet, library_brush};
 
 /// Size of a panel, mm.
 const PANEL_MM: [f64; 2] = [86.0, 48.0];
@@ -132,10 +131,7 @@ impl Panel {
     }
 
     fn dry(&mut self, share: f32) -> Result<(), UserError> {
-        let dry = Dry {
-            share: Share::new(share)?,
-            ..Dry::whole(CANVAS)
-        };
+        let dry = common::dry(Share::new(share)?);
         self.offline.edit(dry).map_err(refused)?;
         Ok(())
     }
@@ -190,12 +186,7 @@ fn loading(library: PaintLibrary, board: Board) -> Result<Panel, UserError> {
         ["Burnt Sienna", "Yellow Ochre=0.5,Titanium White=0.5"],
     ];
     for (row, [left, right]) in pairs.into_iter().enumerate() {
-        let load = Load {
-            mixture: mixture_of(left)?,
-            beside: Some(mixture_of(right)?),
-            brush: BrushName::new(BRUSH)?,
-        };
-        panel.offline.edit(load).map_err(refused)?;
+        panel.load_beside(BRUSH, left, Some(right))?;
         let y = 39.0 - 15.0 * row as f64;
         let way = (0..7).map(|i| {
             let side = if i % 2 == 0 { -1.0 } else { 1.0 };

@@ -20,13 +20,12 @@ use maulstick_appearance::picture::Picture;
 use maulstick_brush::BrushFile;
 use maulstick_brush::file::library::LIBRARY;
 use maulstick_optics::PaintLibrary;
-use maulstick_painting::edits::Load;
+use maulstick_painting::edits::common;
 use maulstick_painting::picture::picture;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_rig::UserError;
 use maulstick_session::Offline;
 use maulstick_types::Mixture;
-use maulstick_types::values::BrushName;
 
 use maulstick::page::Page;
 use maulstick_painting_setup::refused;
@@ -134,11 +133,18 @@ impl Panel {
     }
 
     fn load(&mut self, brush: &str, mixture: &str) -> Result<(), UserError> {
-        let load = Load {
-            mixture: mixture_of(mixture)?,
-            beside: None,
-            brush: BrushName::new(brush)?,
-        };
+        self.load_beside(brush, mixture, None)
+    }
+
+    /// Loads a brush with a mixture, and its right half with another one.
+    fn load_beside(
+        &mut self,
+        brush: &str,
+        mixture: &str,
+        beside: Option<&str>,
+    ) -> Result<(), UserError> {
+        let beside = beside.map(mixture_of).transpose()?;
+        let load = common::load(brush, mixture_of(mixture)?, beside)?;
         self.offline.edit(load).map_err(refused)?;
         Ok(())
     }
@@ -197,12 +203,7 @@ pub(crate) fn one_stroke_panel(
         library,
     )?;
     for gesture in one_stroke::marks(file) {
-        let load = Load {
-            mixture: mixture_of(DOUBLE[0])?,
-            beside: Some(mixture_of(DOUBLE[1])?),
-            brush: BrushName::new(BRUSH)?,
-        };
-        panel.offline.edit(load).map_err(refused)?;
+        panel.load_beside(BRUSH, DOUBLE[0], Some(DOUBLE[1]))?;
         panel.paint(&gesture)?;
     }
     Ok(panel.picture())

@@ -139,12 +139,9 @@ fn a_double_loaded_brush_paints_two_colours_side_by_side() {
     let file = library_brush("flat").expect("flat");
     let mut panel =
         Panel::new((SIZE_MM, Board::new(CELL_MM)), "grey", file, paints()).expect("a panel");
-    let load = Load {
-        mixture: mixture_of("Pyrrole Red").expect("a mixture"),
-        beside: Some(mixture_of("Titanium White").expect("a mixture")),
-        brush: BrushName::new(BRUSH).expect("a name"),
-    };
-    panel.offline.edit(load).expect("loaded");
+    panel
+        .load_beside(BRUSH, "Pyrrole Red", Some("Titanium White"))
+        .expect("loaded");
     let way = vec![[12.0, 25.0], [76.0, 25.0]];
     let gesture = stroke(way, 1.6, 90.0, |t| 0.3 * gesture::swell(t, 0.1));
     panel.paint(&gesture).expect("painted");

@@ -1,10 +1,10 @@
 //! Presets taken up, and made of the brush in the hand.
 
+use maulstick_painting::edits::common;
 use maulstick_rig::UserError;
 use maulstick_types::command::Command;
 use maulstick_types::scene::BrushMode;
 
-use crate::panels::desk_edits;
 use crate::settings::brush_library::is_of_library;
 use crate::settings::presets::{BeforePreset, Preset};
 use crate::widgets::context::PanelContext;
@@ -56,7 +56,7 @@ impl PanelContext<'_> {
                 .clone_from(&self.preferences.brushes.loading.paint);
         }
         let load: Option<Command> = match loading.paint.is_empty() {
-            true if preset.clean => Some(desk_edits::clean(&brush)?),
+            true if preset.clean => Some(common::clean(&brush)?.into()),
             true => None,
             false => Some(loading.command(&brush, &self.rig.library)?),
         };

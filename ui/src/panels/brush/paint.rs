@@ -1,12 +1,12 @@
 //! Controls that load and clean the brush in the hand.
 
 use eframe::egui::{Button, Ui};
+use maulstick_painting::edits::common;
 use maulstick_rig::UserError;
 use maulstick_types::values::ThinnerShare;
 use maulstick_ui_kit::rows::{Number, Sliders, row};
 
 use crate::input::keys::Action;
-use crate::panels::desk_edits;
 use crate::widgets::context::{PanelContext, ask};
 use crate::widgets::{brush_gauge, mixture_field};
 
@@ -74,7 +74,7 @@ impl PaintRows {
                 .hint(ui.ctx(), words, &[Action::Clean]);
             let clean = ui.button(tr!("Clean")).on_hover_text(hover);
             if clean.clicked() {
-                let clean = desk_edits::clean(work.rig.brush_name());
+                let clean = common::clean(work.rig.brush_name());
                 ask(work, clean);
             }
         });

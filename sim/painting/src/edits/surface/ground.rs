@@ -3,12 +3,13 @@
 use std::str::FromStr;
 
 use maulstick_appearance::ground::{add_spectrum, check_ground};
-use maulstick_canvas::assets::SPECTRUM;
+use maulstick_canvas::assets::{Assets, SPECTRUM};
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{MaterialName, SpectrumText, ValueError};
 
+use crate::edits::surface::is_held;
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
 use crate::error::EditError;
 use crate::painting::Painting;
@@ -105,6 +106,15 @@ impl PaintingEdit for Ground {
         check_ground(&ground, assets)?;
         bench.change_material(StepName::Ground, on, |material| material.ground = ground);
         Ok(Applied::Done)
+    }
+
+    fn check_names(&self) -> Result<(), EditError> {
+        if let GroundSource::Named { name } = &self.ground
+            && !is_held(name)
+        {
+            check_ground(name, &Assets::default())?;
+        }
+        Ok(())
     }
 
     fn log_words(&self) -> String {

@@ -23,3 +23,10 @@ pub use scrape::Scrape;
 pub use size::Size;
 pub use tooth::Tooth;
 pub use wells::Wells;
+
+use maulstick_canvas::assets::{IMAGE, SPECTRUM};
+
+/// True if a name refers to something that a painting holds, and alone can check.
+fn is_held(name: &str) -> bool {
+    name.starts_with(IMAGE) || name.starts_with(SPECTRUM)
+}

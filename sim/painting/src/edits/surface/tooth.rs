@@ -1,14 +1,16 @@
 //! Changes the tooth of a surface.
 
+use maulstick_canvas::assets::Assets;
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{MaterialName, ValueError};
 
+use crate::edits::surface::is_held;
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
 use crate::error::EditError;
 use crate::painting::Painting;
-use crate::setup::relief_called;
+use crate::setup::{PaintingSetup, relief_called};
 
 /// Change the tooth of the canvas
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -67,6 +69,15 @@ impl PaintingEdit for Tooth {
             material.tooth_seed = self.seed;
         });
         Ok(Applied::Done)
+    }
+
+    fn check_names(&self) -> Result<(), EditError> {
+        if is_held(&self.tooth) {
+            return Ok(());
+        }
+        let cell_m = PaintingSetup::default().cell_m;
+        relief_called(&self.tooth, self.seed, cell_m, &Assets::default())?;
+        Ok(())
     }
 
     fn log_words(&self) -> String {

@@ -1,6 +1,15 @@
 //! Steps of the paint model alone: presolved states of a brush on wet paint.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`advection`] | the advection alone, compared with a copy |
+//! | [`stokes`] | the solver of Stokes Paint alone |
+//! | [`texels`] | dAb's stroking algorithms alone |
 
-use maulstick_types::Edit;
+mod advection;
+mod stokes;
+mod texels;
+
 use std::sync::Arc;
 use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
@@ -14,15 +23,13 @@ use maulstick_optics::PaintLibrary;
 use maulstick_painting::edits::{Fill, FillPaint, Load};
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_rig::UserError;
-use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{BrushName, FilmThickness};
+use maulstick_types::{Edit, Pose};
 
-use crate::advection;
 use crate::header::header_of;
 use crate::report::{Report, quantile, sorted};
-use crate::{stokes, texels};
 
 const BRUSH: &str = "main";
 /// The paints on the canvas and on the brush.

@@ -1,6 +1,6 @@
 //! The solver of Stokes Paint alone: steps of windows, and multigrid on the pressure's equation.
 
-#[path = "../../../sim/models/stokes/solver/tests/common/pools.rs"]
+#[path = "../../../../sim/models/stokes/solver/tests/common/pools.rs"]
 #[allow(unreachable_pub, reason = "a pool is what tests share")]
 mod pools;
 
