@@ -19,8 +19,8 @@ use maulstick_types::paint::TILE;
 
 use crate::appearance::Appearance;
 use crate::bakery::Bakery;
-use crate::blank_surface::BlankSurface;
 use crate::display::DisplayTile;
+use crate::shown_surface::ShownSurface;
 
 /// Number of drawing threads: the stepper and its worker have the other cores.
 const THREADS: usize = 2;
@@ -112,7 +112,7 @@ impl BandHeights {
 #[derive(Debug)]
 pub struct Banded<'a> {
     store: &'a TileStore,
-    bare: &'a BlankSurface,
+    bare: &'a ShownSurface,
     look: &'a Appearance,
     cell_m: f64,
     heights: Shelf<Vec<f32>>,
@@ -123,7 +123,7 @@ impl<'a> Banded<'a> {
     #[must_use]
     pub fn new(
         store: &'a TileStore,
-        bare: &'a BlankSurface,
+        bare: &'a ShownSurface,
         look: &'a Appearance,
         cell_m: f64,
     ) -> Self {
@@ -156,7 +156,7 @@ impl<'a> Banded<'a> {
 
     /// The unpainted surface.
     #[must_use]
-    pub fn bare(&self) -> &'a BlankSurface {
+    pub fn bare(&self) -> &'a ShownSurface {
         self.bare
     }
 
@@ -197,7 +197,7 @@ impl<'a> Banded<'a> {
             let width = self.cells()[0];
             let mut heights = vec![0.0f32; self.rows(band).len() * width];
             for (id, tile) in self.tiles(band) {
-                let plane = DisplayTile::height_on(self.bare, id, tile);
+                let plane = self.bare.height(id, tile);
                 self.spread(id, &plane, &mut heights);
             }
             heights
@@ -258,7 +258,7 @@ impl<'a> Banded<'a> {
             .map_or_else(|| ground.under(), Under::Planes);
         let films = self.bare.films(tile);
         let unlit = films.shade(&self.look.studio, under);
-        DisplayTile::on(self.bare, id, tile, (&films, unlit), self.look)
+        self.bare.display(id, tile, (&films, unlit), self.look)
     }
 }
 

@@ -4,17 +4,13 @@
 
 use std::sync::Arc;
 
-use maulstick_canvas::dry::DryStack;
 use maulstick_canvas::relief::Relief;
-use maulstick_canvas::tile::{Tile, TileId};
+use maulstick_canvas::tile::TileId;
 use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::paint::TILE;
 
-use crate::colouring::Colouring;
-use crate::display::WetFilms;
 use crate::ground::Ground;
 use crate::heap::{HeapCells, WELL_M};
-use crate::show_paint::ShowPaint;
 
 /// Number of thicknesses with tabulated colour, evenly from zero to [`MOST_M`].
 const LEVELS: usize = 17;
@@ -141,26 +137,9 @@ pub struct BlankSurface {
     pub relief: Arc<Relief>,
     /// Its wells.
     pub wells: Vec<WellLook>,
-    /// Display of its paint model.
-    pub shown: &'static dyn ShowPaint,
 }
 
 impl BlankSurface {
-    /// The wet films of a tile on it for shading by the optics; empty where nothing was painted.
-    #[must_use]
-    pub fn films(&self, tile: Option<&Tile>) -> WetFilms {
-        let tile = tile.filter(|_| self.shown.colouring() == Colouring::Films);
-        let films = tile.map(|tile| WetFilms(self.shown.films(&tile.wet())));
-        films.unwrap_or_default()
-    }
-
-    /// The dry layers of a tile on it for baking by the optics.
-    #[must_use]
-    pub fn baked<'a>(&self, tile: Option<&'a Tile>) -> Option<&'a Arc<DryStack>> {
-        let tile = tile.filter(|_| self.shown.colouring() == Colouring::Films);
-        tile.and_then(Tile::dry)
-    }
-
     /// The places in a tile of its cells that lie in a well.
     pub fn cells_in_wells(&self, id: TileId) -> impl Iterator<Item = usize> {
         let wells = self.wells.iter();

@@ -5,16 +5,11 @@ use half::slice::HalfFloatSliceExt as _;
 use maulstick_canvas::dry::DryStack;
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::quantum::QUANTUM_M;
-use maulstick_canvas::tile::{Tile, TileId};
+use maulstick_canvas::tile::Tile;
 use maulstick_optics::light::HeightField;
 use maulstick_optics::light::gloss::{merged_gloss, roughness};
 use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::paint::TILE;
-
-use crate::appearance::Appearance;
-use crate::blank_surface::BlankSurface;
-use crate::colouring::Colouring;
-use crate::show_paint::{Films, Seen, counted_films};
 
 /// Display of a tile before light.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,16 +26,9 @@ pub struct DisplayTile {
 
 /// Thickness of each wet paint of a tile, m, by slot.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct WetFilms(pub(crate) Films);
+pub struct WetFilms(pub(crate) Vec<(usize, Vec<f32>)>);
 
 impl WetFilms {
-    /// The wet films of a tile by its counts; empty where nothing was painted.
-    #[must_use]
-    pub fn of(tile: Option<&Tile>) -> Self {
-        let films = tile.map(|tile| counted_films(&tile.wet()));
-        Self(films.unwrap_or_default())
-    }
-
     /// The planes by slot, for the optics.
     #[must_use]
     pub fn planes(&self) -> Vec<(usize, &[f32])> {
@@ -128,65 +116,7 @@ fn gloss(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>, thinner: Option<us
 }
 
 impl DisplayTile {
-    /// Height of a tile of a surface alone, as in [`on`](Self::on), m.
-    #[must_use]
-    pub(crate) fn height_on(bare: &BlankSurface, id: TileId, tile: Option<&Tile>) -> Vec<f32> {
-        let heights = tile.map(|tile| bare.shown.height(bare, id, tile));
-        let mut heights = heights.unwrap_or_else(|| vec![0.0; TILE_CELLS]);
-        for well in bare.in_wells(id) {
-            if well.hides || heights[well.cell] == 0.0 {
-                heights[well.cell] = well.height_m;
-            }
-        }
-        let relief = bare.relief.tile(id);
-        heights
-            .iter_mut()
-            .zip(&*relief)
-            .for_each(|(height, base)| *height += base);
-        heights
-    }
-
-    /// The display of a tile of a surface; `tile` is `None` where nothing was painted. `rgb` are the colours of its wet
-    /// `films` over the ground under them.
-    #[must_use]
-    pub fn on(
-        bare: &BlankSurface,
-        id: TileId,
-        tile: Option<&Tile>,
-        (films, rgb): (&WetFilms, [Vec<f32>; 3]),
-        look: &Appearance,
-    ) -> Self {
-        let is_shaded = bare.shown.colouring() == Colouring::Films;
-        let own = (!is_shaded).then(|| WetFilms::of(tile));
-        let mut shown = Self::of(tile, (own.as_ref().unwrap_or(films), rgb), look.thinner);
-        if let Some(tile) = tile {
-            let seen = Seen {
-                look,
-                bare,
-                id,
-                tile,
-            };
-            bare.shown.finish(&seen, &mut shown);
-        }
-        let dry = tile.and_then(Tile::dry);
-        for well in bare.in_wells(id) {
-            let cell = well.cell;
-            let is_bare = || {
-                let dried = dry.is_some_and(|stack| stack.height()[cell] != 0.0);
-                shown.wetness[cell] == 0.0 && !dried
-            };
-            if well.hides || well.height_m > 0.0 && is_bare() {
-                for (plane, channel) in shown.rgb.iter_mut().zip(well.rgb) {
-                    plane[cell] = channel;
-                }
-                (shown.gloss[cell], shown.wetness[cell]) = (1.0, 1.0);
-            }
-        }
-        shown.height = Self::height_on(bare, id, tile);
-        shown
-    }
-
-    /// Display of a tile on a flat ground; see [`on`](Self::on).
+    /// Display of a tile on a flat ground. `rgb` are the colours of its wet `films` over that.
     #[must_use]
     pub fn of(
         tile: Option<&Tile>,

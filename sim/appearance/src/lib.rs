@@ -10,6 +10,7 @@
 //! | [`heap`] | the shape of paint in a well |
 //! | [`show_paint`], [`colouring`] | display of a paint model's planes, and conversion of counts to colours |
 //! | [`display`] | display of a tile before light: colour, gloss, height |
+//! | [`shown_surface`] | a blank surface and the display of what is painted on it |
 //! | [`bands`] | a surface by rows of tiles |
 //! | [`picture`] | surfaces under light as pixels |
 //!
@@ -63,6 +64,7 @@ pub mod lamp;
 pub mod light;
 pub mod picture;
 pub mod show_paint;
+pub mod shown_surface;
 
 pub use appearance::Appearance;
 pub use bakery::Bakery;

@@ -6,9 +6,9 @@ use maulstick_appearance::Appearance;
 use maulstick_appearance::Bakery;
 use maulstick_appearance::blank_surface::BlankSurface;
 use maulstick_appearance::colouring::Colouring;
-use maulstick_appearance::display::DisplayTile;
 use maulstick_appearance::ground::Ground;
 use maulstick_appearance::show_paint::{Counted, ShowPaint};
+use maulstick_appearance::shown_surface::ShownSurface;
 use maulstick_canvas::assets::Assets;
 use maulstick_canvas::dry::{DryLayer, DryStack};
 use maulstick_canvas::page::Page;
@@ -74,10 +74,12 @@ impl Easel {
             Colouring::Films => &Counted,
             Colouring::Volumes(_) => &Layers { emboss: 0.0 },
         };
-        let bare = BlankSurface {
-            ground: self.ground.clone(),
-            relief: Arc::new(Relief::flat(2.5e-4)),
-            wells: Vec::new(),
+        let bare = ShownSurface {
+            blank: BlankSurface {
+                ground: self.ground.clone(),
+                relief: Arc::new(Relief::flat(2.5e-4)),
+                wells: Vec::new(),
+            },
             shown,
         };
         let ground = self.ground.tile(ID);
@@ -98,7 +100,7 @@ impl Easel {
             None => ground.under(),
         };
         let rgb = films.shade(studio, under);
-        let shown = DisplayTile::on(&bare, ID, Some(tile), (&films, rgb), &self.look);
+        let shown = bare.display(ID, Some(tile), (&films, rgb), &self.look);
         let to_xyz = inverse(studio.to_rgb());
         let white = studio.white();
         let cell = |cell: usize| {

@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use maulstick_appearance::Appearance;
-use maulstick_appearance::blank_surface::BlankSurface;
+use maulstick_appearance::shown_surface::ShownSurface;
 use maulstick_bus::typed::Reader;
 use maulstick_bus::{Bus, BusError, Request, Server, Wake};
 use maulstick_canvas::dry::DryStack;
@@ -50,7 +50,7 @@ pub struct FedSurface {
     /// Tiles across and up.
     pub grid: [u32; 2],
     /// Its appearance where nothing was painted.
-    pub bare: Arc<BlankSurface>,
+    pub bare: Arc<ShownSurface>,
     /// Tiles on which something was painted, with the number of their version.
     pub tiles: BTreeMap<TileId, (u64, Option<Arc<Tile>>)>,
 }

@@ -217,7 +217,7 @@ impl Pyramid {
             }
         };
         for ((id, films), rgb) in ids.iter().zip(&films).zip(colours) {
-            let shown = DisplayTile::on(&surface.bare, *id, painted(id), (films, rgb), look);
+            let shown = surface.bare.display(*id, painted(id), (films, rgb), look);
             let version = Self::painted(surface, 0, *id);
             self.put_aside(look, (number, 0, *id), version, &shown);
             self.keep((number, 0, *id), version, Arc::new(shown));

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use maulstick_appearance::blank_surface::BlankSurface;
 use maulstick_bus::bus::Answer;
 use maulstick_bus::{Faults, MemoryNet, Qos};
 use maulstick_types::decode;
@@ -39,11 +40,13 @@ fn rig_of(cells: [u32; 2]) -> Rig {
     let look = Appearance::new(maulstick_optics::Studio::daylight());
     {
         let mut fed = feed.lock();
-        let bare = Arc::new(BlankSurface {
+        let bare = Arc::new(ShownSurface {
             shown: &Counted,
-            ground: Ground::Even(vec![0.95; look.studio.wavelengths()]),
-            relief: Arc::new(Relief::flat(2.5e-4)),
-            wells: Vec::new(),
+            blank: BlankSurface {
+                ground: Ground::Even(vec![0.95; look.studio.wavelengths()]),
+                relief: Arc::new(Relief::flat(2.5e-4)),
+                wells: Vec::new(),
+            },
         });
         let surface = FedSurface {
             cells,
@@ -317,7 +320,7 @@ fn a_picture_is_the_ground_of_each_tile_bare_and_painted() {
     {
         let mut fed = rig.feed.lock();
         let surface = fed.surfaces.get_mut(&0).expect("a surface");
-        Arc::make_mut(&mut surface.bare).ground = pictured(&look, cells);
+        Arc::make_mut(&mut surface.bare).blank.ground = pictured(&look, cells);
         surface.tiles.insert(place, (7, Some(Arc::clone(&tile))));
         fed.look = Some(Arc::new(look.clone()));
     }

@@ -15,6 +15,7 @@ use crate::appearance::Appearance;
 use crate::bands::Banded;
 use crate::blank_surface::BlankSurface;
 use crate::show_paint::Counted;
+use crate::shown_surface::ShownSurface;
 
 const CELLS: [u32; 2] = [150, 70];
 const CELL_M: f64 = 2.5e-4;
@@ -44,12 +45,14 @@ fn studio() -> Studio {
     studio
 }
 
-fn bare(studio: &Studio) -> BlankSurface {
-    BlankSurface {
+fn bare(studio: &Studio) -> ShownSurface {
+    ShownSurface {
         shown: &Counted,
-        ground: crate::ground::Ground::Even(vec![0.95; studio.wavelengths()]),
-        relief: Arc::new(Relief::flat(CELL_M)),
-        wells: Vec::new(),
+        blank: BlankSurface {
+            ground: crate::ground::Ground::Even(vec![0.95; studio.wavelengths()]),
+            relief: Arc::new(Relief::flat(CELL_M)),
+            wells: Vec::new(),
+        },
     }
 }
 

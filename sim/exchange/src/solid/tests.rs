@@ -7,6 +7,7 @@ use maulstick_appearance::Appearance;
 use maulstick_appearance::blank_surface::BlankSurface;
 use maulstick_appearance::ground::Ground;
 use maulstick_appearance::show_paint::{Counted, ShowPaint};
+use maulstick_appearance::shown_surface::ShownSurface;
 use maulstick_canvas::own_plane::OwnPlane;
 use maulstick_canvas::page::Page;
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
@@ -67,7 +68,7 @@ fn planes(tile: [usize; 2], first: usize, layers: usize, fill: Fill<'_>) -> Plan
 
 struct Surface {
     store: TileStore,
-    bare: BlankSurface,
+    bare: ShownSurface,
     look: Appearance,
 }
 
@@ -80,11 +81,13 @@ impl Surface {
         }
         Self {
             store: TileStore::new(CELLS),
-            bare: BlankSurface {
+            bare: ShownSurface {
                 shown: &Overhangs,
-                ground: Ground::Even(vec![0.9; studio.wavelengths()]),
-                relief: Arc::new(relief),
-                wells: Vec::new(),
+                blank: BlankSurface {
+                    ground: Ground::Even(vec![0.9; studio.wavelengths()]),
+                    relief: Arc::new(relief),
+                    wells: Vec::new(),
+                },
             },
             look: Appearance::new(studio),
         }
@@ -110,7 +113,7 @@ impl Surface {
 
     /// Displayed heights, cells.
     fn shown(&self, shown: &'static dyn ShowPaint) -> Vec<f32> {
-        let bare = BlankSurface {
+        let bare = ShownSurface {
             shown,
             ..self.bare.clone()
         };

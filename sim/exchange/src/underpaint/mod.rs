@@ -12,8 +12,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use maulstick_appearance::Appearance;
-use maulstick_appearance::blank_surface::BlankSurface;
 use maulstick_appearance::ground::Ground;
+use maulstick_appearance::shown_surface::ShownSurface;
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::tile::TileId;
@@ -36,7 +36,7 @@ const GROUND_BITS: u8 = 0xf8;
 #[derive(Clone, Debug)]
 pub struct Support {
     look: Arc<Appearance>,
-    bare: Arc<BlankSurface>,
+    bare: Arc<ShownSurface>,
     cells: [u32; 2],
     paints: Vec<Paint>,
 }
@@ -100,7 +100,7 @@ pub struct Underpainting {
 /// Distinguished colours of a ground.
 #[derive(Clone, Debug)]
 struct Grounds {
-    bare: Arc<BlankSurface>,
+    bare: Arc<ShownSurface>,
     cells: [u32; 2],
 }
 

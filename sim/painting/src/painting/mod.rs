@@ -23,7 +23,7 @@ pub use underpainting::{LaidTile, Wetness};
 use std::sync::Arc;
 
 use maulstick_appearance::Appearance;
-use maulstick_appearance::blank_surface::BlankSurface;
+use maulstick_appearance::shown_surface::ShownSurface;
 use maulstick_brush::BrushFile;
 use maulstick_canvas::assets::Assets;
 use maulstick_canvas::page::Pager;
@@ -114,7 +114,7 @@ impl Painting {
 
     /// A surface without its painting.
     #[must_use]
-    pub fn bare(&self, surface: u32) -> Option<&Arc<BlankSurface>> {
+    pub fn bare(&self, surface: u32) -> Option<&Arc<ShownSurface>> {
         self.bench
             .desk
             .surfaces

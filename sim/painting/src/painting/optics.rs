@@ -10,6 +10,7 @@ use maulstick_appearance::colouring::Colouring;
 use maulstick_appearance::ground::Ground;
 use maulstick_appearance::heap::{Heap, HeapCells};
 use maulstick_appearance::light::studio_settings;
+use maulstick_appearance::shown_surface::ShownSurface;
 use maulstick_canvas::assets::Assets;
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_canvas::relief::Relief;
@@ -69,7 +70,7 @@ impl Optics {
         &self,
         surface: &Surface,
         relief: Option<Arc<Relief>>,
-    ) -> Result<BlankSurface, EditError> {
+    ) -> Result<ShownSurface, EditError> {
         self.blank_in(&self.look.studio, surface, relief)
     }
 
@@ -78,7 +79,7 @@ impl Optics {
         studio: &Studio,
         surface: &Surface,
         relief: Option<Arc<Relief>>,
-    ) -> Result<BlankSurface, EditError> {
+    ) -> Result<ShownSurface, EditError> {
         let ground = Ground::called(&surface.ground, surface.cells, studio, &self.assets)?;
         let relief = match relief {
             Some(relief) => relief,
@@ -122,10 +123,12 @@ impl Optics {
                 shape: WellShape::Heap(heap, colours),
             });
         }
-        Ok(BlankSurface {
-            ground,
-            relief,
-            wells,
+        Ok(ShownSurface {
+            blank: BlankSurface {
+                ground,
+                relief,
+                wells,
+            },
             shown: model_called(&surface.model)?.shown,
         })
     }

@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, HashSet};
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
-use maulstick_appearance::blank_surface::BlankSurface;
+use maulstick_appearance::shown_surface::ShownSurface;
 use maulstick_canvas::page::Pager;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::store::{TileRect, TileStore};
@@ -33,7 +33,7 @@ pub(crate) struct SurfaceState {
     pub(crate) cell_m: f64,
     pub(crate) model: &'static ModelEntry,
     pub(crate) store: TileStore,
-    pub(crate) bare: Arc<BlankSurface>,
+    pub(crate) bare: Arc<ShownSurface>,
     /// Most quanta that a cell ever had: how high strips may touch.
     pub(crate) top: f32,
 }
