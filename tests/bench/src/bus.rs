@@ -2,8 +2,9 @@
 //! decoded and in order, and through a bare zenoh put into a ring and a thread, in turn on the same link.
 
 use std::io::{BufRead as _, BufReader, Write as _};
-use std::process::{Command, Stdio};
-use std::sync::Arc;
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
 use maulstick_bus::credit::Stamp;
@@ -16,6 +17,7 @@ use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin};
 use zenoh::Wait as _;
 use zenoh::handlers::RingChannel;
+use zenoh::pubsub::Publisher;
 use zenoh::qos::{CongestionControl, Priority};
 
 use crate::report::{Report, quantile, sorted};
@@ -24,6 +26,8 @@ use crate::report::{Report, quantile, sorted};
 const PAIRS: u64 = 4000;
 /// Number of unmeasured pairs before them.
 const WARM_UP: u64 = 400;
+/// Time between two.
+const APART: Duration = Duration::from_micros(500);
 /// Topic of the bare put.
 const BARE: &str = "bench/bare";
 /// Bytes of a sample with its header, which the bare put carries too.
@@ -31,6 +35,89 @@ const BYTES: usize = 200;
 
 fn fault(error: impl std::fmt::Display) -> UserError {
     UserError::failure(error.to_string())
+}
+
+/// Both ways of a sample over one link.
+struct Link<'a> {
+    bus: &'a ZenohBus,
+    ours: CreditSender<StylusSample>,
+    bare: Publisher<'a>,
+    sample: StylusSample,
+}
+
+impl<'a> Link<'a> {
+    fn new(bus: &'a ZenohBus) -> Result<Self, UserError> {
+        let origin = Origin {
+            source: 1,
+            epoch: 1,
+        };
+        let (topics, wake) = (Topics::new("bench"), Wake::new());
+        let topic = topics.sample("near");
+        let bare = bus
+            .raw_session()
+            .declare_publisher(BARE)
+            .congestion_control(CongestionControl::Drop)
+            .priority(Priority::RealTime);
+        Ok(Self {
+            bus,
+            ours: CreditSender::new(bus, &topics, &topic, origin, &wake)?,
+            bare: bare.wait().map_err(fault)?,
+            sample: StylusSample::away(),
+        })
+    }
+
+    /// Sends a sample on the stream with credit.
+    fn send(&mut self) -> Result<(), UserError> {
+        let now_ns = self.bus.now_ns();
+        let event_ns = now_ns;
+        self.ours.reset_credit();
+        self.ours
+            .send(Flags::NONE, Stamp { now_ns, event_ns }, &self.sample)?;
+        Ok(())
+    }
+
+    /// Puts the bytes of one.
+    fn put(&self) -> Result<(), UserError> {
+        let mut bytes = vec![0; BYTES];
+        bytes[..8].copy_from_slice(&self.bus.now_ns().to_le_bytes());
+        self.bare.put(bytes).wait().map_err(fault)
+    }
+
+    /// Sends both until the far end has received both.
+    fn wait_until_ready(&mut self, ready: &mpsc::Receiver<String>) -> Result<(), UserError> {
+        loop {
+            self.send()?;
+            self.put()?;
+            match ready.recv_timeout(Duration::from_millis(20)) {
+                Ok(line) if line == "ready" => return Ok(()),
+                Ok(line) => return Err(fault(line)),
+                Err(mpsc::RecvTimeoutError::Timeout) => {}
+                Err(error) => return Err(fault(error)),
+            }
+        }
+    }
+}
+
+/// The lines that a process prints.
+fn lines_of(child: &mut Child) -> Result<mpsc::Receiver<String>, UserError> {
+    let output = child.stdout.take().ok_or_else(|| fault("no output"))?;
+    let mut lines = BufReader::new(output).lines();
+    let (to_us, ready) = mpsc::channel();
+    std::thread::spawn(move || {
+        while let Some(Ok(line)) = lines.next() {
+            if to_us.send(line).is_err() {
+                break;
+            }
+        }
+    });
+    Ok(ready)
+}
+
+/// Latencies of a line, ns, sorted, without the unmeasured ones.
+fn latencies(line: &str) -> Vec<f64> {
+    let cells = line.split(' ').filter_map(|cell| cell.parse().ok());
+    let all: Vec<f64> = cells.collect();
+    sorted(all[all.len().min(WARM_UP as usize)..].to_vec())
 }
 
 /// Measures and reports.
@@ -51,76 +138,22 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
         .stdout(Stdio::piped())
         .spawn()
         .map_err(fault)?;
-    let mut lines = BufReader::new(child.stdout.take().ok_or_else(|| fault("no output"))?).lines();
-    let (topics, wake) = (Topics::new("bench"), Wake::new());
-    let origin = Origin {
-        source: 1,
-        epoch: 1,
-    };
-    let topic = topics.sample("near");
-    let mut ours = CreditSender::<StylusSample>::new(&bus, &topics, &topic, origin, &wake)?;
-    let bare = bus
-        .raw_session()
-        .declare_publisher(BARE)
-        .congestion_control(CongestionControl::Drop)
-        .priority(Priority::RealTime)
-        .wait()
-        .map_err(fault)?;
-    // The far end reports the arrival of both.
-    let sample = StylusSample::away();
-    let send = |ours: &mut CreditSender<StylusSample>, which: u64| -> Result<(), UserError> {
-        if which == 0 {
-            let now_ns = bus.now_ns();
-            ours.reset_credit();
-            ours.send(
-                Flags::NONE,
-                Stamp {
-                    now_ns,
-                    event_ns: now_ns,
-                },
-                &sample,
-            )?;
-        } else {
-            let mut bytes = vec![0; BYTES];
-            bytes[..8].copy_from_slice(&bus.now_ns().to_le_bytes());
-            bare.put(bytes).wait().map_err(fault)?;
-        }
-        Ok(())
-    };
-    let (to_us, ready) = std::sync::mpsc::channel();
-    std::thread::spawn(move || {
-        while let Some(Ok(line)) = lines.next() {
-            if to_us.send(line).is_err() {
-                break;
-            }
-        }
-    });
-    loop {
-        send(&mut ours, 0)?;
-        send(&mut ours, 1)?;
-        match ready.recv_timeout(Duration::from_millis(20)) {
-            Ok(line) if line == "ready" => break,
-            Ok(line) => return Err(fault(line)),
-            Err(std::sync::mpsc::RecvTimeoutError::Timeout) => {}
-            Err(error) => return Err(fault(error)),
-        }
-    }
-    for number in 0..2 * (PAIRS + WARM_UP) {
-        send(&mut ours, number % 2)?;
-        std::thread::sleep(Duration::from_micros(500));
+    let ready = lines_of(&mut child)?;
+    let mut link = Link::new(&bus)?;
+    link.wait_until_ready(&ready)?;
+    for _ in 0..PAIRS + WARM_UP {
+        link.send()?;
+        std::thread::sleep(APART);
+        link.put()?;
+        std::thread::sleep(APART);
     }
     child.stdin.take();
-    let mut rows = [Vec::new(), Vec::new()];
-    for (row, _) in rows.iter_mut().zip(0..2) {
-        let line = ready.recv_timeout(Duration::from_secs(10)).map_err(fault)?;
-        let all: Vec<f64> = line
-            .split(' ')
-            .filter_map(|cell| cell.parse().ok())
-            .collect();
-        *row = sorted(all[all.len().min(WARM_UP as usize)..].to_vec());
-    }
+    let next = || {
+        let line = ready.recv_timeout(Duration::from_secs(10));
+        line.map(|line| latencies(&line)).map_err(fault)
+    };
+    let (ours, bare) = (next()?, next()?);
     child.wait().map_err(fault)?;
-    let [ours, bare] = rows;
     for (name, share) in [
         ("sample.p50", 0.5),
         ("sample.p90", 0.9),
@@ -133,32 +166,15 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     Ok(())
 }
 
-/// The receiving process: prints `ready` once it has received both, and at the end of its input the latencies of ours
-/// and of the bare ones, ns.
-pub(crate) fn far_end(argument: &str) -> Result<(), UserError> {
-    let (locator, offset) = argument.split_once(' ').ok_or_else(|| fault("no clock"))?;
-    let clock = RigClock::with_offset(offset.parse().map_err(fault)?);
-    let dial = Dial {
-        name: "far".into(),
-        listen: Some(locator.replace("near.sock", "far.sock")),
-        connect: vec![locator.to_owned()],
-    };
-    let bus = Arc::new(ZenohBus::open(&dial, clock)?);
-    let wake = Wake::new();
-    let topics = Topics::new("bench");
-    let me = Origin {
-        source: 2,
-        epoch: 2,
-    };
-    let topic = topics.sample("*");
-    let mut receiver = CreditReceiver::<StylusSample>::new(&*bus, &topics, &topic, me, &wake)?;
+/// Latencies of the bare puts, ns.
+fn bare_latencies(bus: &ZenohBus, clock: RigClock) -> Result<mpsc::Receiver<u64>, UserError> {
     let ring = bus
         .raw_session()
         .declare_subscriber(BARE)
         .with(RingChannel::new(1024))
         .wait()
         .map_err(fault)?;
-    let (to_main, bare) = std::sync::mpsc::channel();
+    let (to_main, bare) = mpsc::channel();
     std::thread::spawn(move || {
         while let Ok(sample) = ring.recv() {
             let now_ns = clock.now_ns();
@@ -170,24 +186,47 @@ pub(crate) fn far_end(argument: &str) -> Result<(), UserError> {
             }
         }
     });
-    let ended = Wake::new();
-    let (end, at_end) = (
-        Arc::new(std::sync::atomic::AtomicBool::new(false)),
-        ended.clone(),
-    );
+    Ok(bare)
+}
+
+/// A flag that is set, and rung for, at the end of the standard input.
+fn end_of_input(wake: &Wake) -> Arc<AtomicBool> {
+    let (end, wake) = (Arc::new(AtomicBool::new(false)), wake.clone());
     let flag = Arc::clone(&end);
-    let rung = wake.clone();
     std::thread::spawn(move || {
         std::io::stdin().lines().for_each(drop);
-        flag.store(true, std::sync::atomic::Ordering::SeqCst);
-        rung.ring();
-        at_end.ring();
+        flag.store(true, Ordering::SeqCst);
+        wake.ring();
     });
+    end
+}
+
+/// The receiving process: prints `ready` once it has received both, and at the end of its input the latencies of ours
+/// and of the bare ones, ns.
+pub(crate) fn far_end(argument: &str) -> Result<(), UserError> {
+    let (locator, offset) = argument.split_once(' ').ok_or_else(|| fault("no clock"))?;
+    let clock = RigClock::with_offset(offset.parse().map_err(fault)?);
+    let dial = Dial {
+        name: "far".into(),
+        listen: Some(locator.replace("near.sock", "far.sock")),
+        connect: vec![locator.to_owned()],
+    };
+    let bus = ZenohBus::open(&dial, clock)?;
+    let wake = Wake::new();
+    let topics = Topics::new("bench");
+    let me = Origin {
+        source: 2,
+        epoch: 2,
+    };
+    let topic = topics.sample("*");
+    let mut receiver = CreditReceiver::<StylusSample>::new(&bus, &topics, &topic, me, &wake)?;
+    let bare = bare_latencies(&bus, clock)?;
+    let end = end_of_input(&wake);
     let (mut ours, mut theirs) = (Vec::new(), Vec::new());
     let mut said = false;
-    while !end.load(std::sync::atomic::Ordering::SeqCst) {
+    while !end.load(Ordering::SeqCst) {
         wake.wait(Duration::from_millis(100));
-        receiver.poll(&*bus)?;
+        receiver.poll(&bus)?;
         while let Some(received) = receiver.pop() {
             ours.push(clock.now_ns() - received.header.sent_ns);
         }

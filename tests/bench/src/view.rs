@@ -116,6 +116,69 @@ impl Sheet {
     }
 }
 
+/// The whole desk in a window.
+fn view_of(picture: &Offscreen, scene: &Scene) -> Option<View> {
+    let [canvas, palette] = [0, 1].map(|place| scene.surfaces.get(place));
+    View::of(picture.area(), canvas?, palette, Side::Left, rack::WIDTH)
+}
+
+/// The surfaces, whole.
+fn sheets(
+    picture: &Offscreen,
+    passes: &Passes,
+    scene: &Scene,
+    view: &View,
+) -> Result<[Sheet; 2], UserError> {
+    let mut sheets = [
+        Sheet::new(scene, CANVAS, view)?,
+        Sheet::new(scene, PALETTE, view)?,
+    ];
+    for sheet in &mut sheets {
+        let whole = sheet.whole();
+        sheet.view.update(picture.gpu(), passes, &whole);
+    }
+    Ok(sheets)
+}
+
+/// The pen in a frame, drawn along the canvas.
+fn sample(frame: u32) -> StylusSample {
+    StylusSample {
+        pose: StylusPose::Contact {
+            point_m: [1e-4 * f64::from(frame), 0.02, 0.0],
+            tilt_rad: DEFAULT_TILT_RAD,
+            twist_rad: 0.0,
+            pressure: 0.4,
+        },
+        in_range: true,
+        ..StylusSample::away()
+    }
+}
+
+/// The brush in a frame, once it is over a surface.
+fn held<'a>(
+    model: &mut BrushModel,
+    file: &'a BrushFile,
+    desk: &Desk,
+    frame: u32,
+) -> Option<BrushPose<'a>> {
+    let pen = Origin {
+        source: 1,
+        epoch: 1,
+    };
+    let now_ns = 1_000_000_000 + u64::from(frame) * 10_000_000;
+    let state = model.state(pen, u64::from(frame), now_ns, &sample(frame))?;
+    let solve = state.solves.last()?;
+    Some(BrushPose {
+        name: BRUSH,
+        file,
+        plane: *desk.plane(solve.surface)?,
+        brush: Rigid::from(&solve.pose),
+        angles: solve.angles_rad.clone(),
+        wetness: 0.5,
+        coat: None,
+    })
+}
+
 /// Measures and reports.
 pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let mut picture = Offscreen::new(PIXELS).map_err(fault)?;
@@ -125,28 +188,14 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
         ..PaintingSetup::default()
     };
     let (scene, export) = (setup.scene(), Export::default());
-    let view = View::of(
-        picture.area(),
-        &scene.surfaces[0],
-        scene.surfaces.get(1),
-        Side::Left,
-        rack::WIDTH,
-    )
-    .ok_or_else(|| fault("no surface"))?;
+    let view = view_of(&picture, &scene).ok_or_else(|| fault("no surface"))?;
     let desk = Desk::of(&scene);
     let (passes, mut backdrop, mut brushes) = {
         let gpu = picture.gpu();
         let passes = Passes::new(gpu, &export);
         (passes, Backdrop::new(gpu), BrushRenderer::new(gpu, &export))
     };
-    let mut sheets = [
-        Sheet::new(&scene, CANVAS, &view)?,
-        Sheet::new(&scene, PALETTE, &view)?,
-    ];
-    for sheet in &mut sheets {
-        let whole = sheet.whole();
-        sheet.view.update(picture.gpu(), &passes, &whole);
-    }
+    let mut sheets = sheets(&picture, &passes, &scene, &view)?;
     let file = BrushFile::library(BRUSH).map_err(fault)?;
     let head = Head::of(&file);
     let mut model = BrushModel::new(file.clone(), 0.5);
@@ -168,40 +217,14 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
         }
         backdrop.update(gpu, &passes, PIXELS, &laid);
         let mut shapes: Vec<_> = backdrop.shape(&view).into_iter().collect();
-        let sample = StylusSample {
-            pose: StylusPose::Contact {
-                point_m: [1e-4 * f64::from(frame), 0.02, 0.0],
-                tilt_rad: DEFAULT_TILT_RAD,
-                twist_rad: 0.0,
-                pressure: 0.4,
-            },
-            in_range: true,
-            ..StylusSample::away()
-        };
-        let pen = Origin {
-            source: 1,
-            epoch: 1,
-        };
-        let now_ns = 1_000_000_000 + u64::from(frame) * 10_000_000;
-        let state = model.state(pen, u64::from(frame), now_ns, &sample);
-        let solve = state.as_ref().and_then(|state| state.solves.last());
-        if let Some((solve, plane)) = solve.and_then(|s| Some((s, desk.plane(s.surface)?))) {
-            let held = BrushPose {
-                name: BRUSH,
-                file: &file,
-                plane: *plane,
-                brush: Rigid::from(&solve.pose),
-                angles: solve.angles_rad.clone(),
-                wetness: 0.5,
-                coat: None,
-            };
+        if let Some(held) = held(&mut model, &file, &desk, frame) {
             let below = Below {
                 view: &view,
                 pixels_per_point: 1.0,
                 desk: &desk,
                 pixels: backdrop.pixels(),
             };
-            let lamp = lamp_over(&scene, plane.id);
+            let lamp = lamp_over(&scene, held.plane.id);
             shapes.extend(brushes.shapes(gpu, &held, &head, &lamp, &below));
         }
         picture.draw(shapes).map_err(fault)?;

@@ -73,6 +73,26 @@ fn settled(pid: u32) -> Result<u64, UserError> {
     resident(pid)
 }
 
+/// The canvas of a rig whose window has come.
+fn canvas_of(bus: &ZenohBus, topics: &Topics) -> Result<Surface, UserError> {
+    let wake = Wake::new();
+    let token = bus.watch(&topics.node("ui"), &wake)?;
+    let mut scenes =
+        Receiver::<Scene>::new(bus, &topics.scene(), Qos::Cached, Queue::Ring(16), &wake)?;
+    let mut canvas: Option<Surface> = None;
+    let give_up = Instant::now() + PATIENCE;
+    let mut is_there = false;
+    while (!is_there || canvas.is_none()) && Instant::now() < give_up {
+        wake.wait(Duration::from_millis(50));
+        is_there |= token.try_recv().is_some();
+        if let Some(scene) = scenes.newest() {
+            let mut surfaces = scene.message.surfaces.into_iter();
+            canvas = surfaces.find(|surface| surface.id == CANVAS);
+        }
+    }
+    canvas.ok_or_else(|| fault("no canvas"))
+}
+
 /// Memory of a window at each zoom.
 fn measured(side_mm: u32, zooms: &[f64], display: &str) -> Result<Vec<u64>, UserError> {
     let place = tempfile::tempdir().map_err(fault)?;
@@ -101,22 +121,7 @@ fn measured(side_mm: u32, zooms: &[f64], display: &str) -> Result<Vec<u64>, User
     let clock = RigClock::with_offset(info.clock_offset_ns);
     let bus = Arc::new(ZenohBus::open(&dial, clock)?);
     let topics = Topics::new("window");
-    let wake = Wake::new();
-    let token = bus.watch(&topics.node("ui"), &wake)?;
-    let mut scenes =
-        Receiver::<Scene>::new(&*bus, &topics.scene(), Qos::Cached, Queue::Ring(16), &wake)?;
-    let mut canvas: Option<Surface> = None;
-    let give_up = Instant::now() + PATIENCE;
-    let mut is_there = false;
-    while (!is_there || canvas.is_none()) && Instant::now() < give_up {
-        wake.wait(Duration::from_millis(50));
-        is_there |= token.try_recv().is_some();
-        if let Some(scene) = scenes.newest() {
-            let mut surfaces = scene.message.surfaces.into_iter();
-            canvas = surfaces.find(|surface| surface.id == CANVAS);
-        }
-    }
-    let canvas = canvas.ok_or_else(|| fault("no canvas"))?;
+    let canvas = canvas_of(&bus, &topics)?;
     let mut commands = CommandClient::of(Arc::clone(&bus) as Arc<dyn Bus>, &topics, "paint");
     let mut send = |edit: Edit| commands.send(edit, None, PATIENCE, &|| false);
     let mixture = "Ultramarine Blue=0.5,Titanium White=0.5"

@@ -135,6 +135,13 @@ impl Film {
     }
 }
 
+/// Target of the hand at a time.
+fn target(s: f64) -> DVec3 {
+    let depth = if s < 0.6 { -0.002 } else { 0.003 };
+    let along = 0.03 * sin(8.0 * (s.clamp(0.8, STROKE_S) - 0.8));
+    DVec3::new(along, 0.0, HEAD_M - depth)
+}
+
 impl FluidRun {
     /// Runs the hand.
     ///
@@ -179,9 +186,7 @@ impl FluidRun {
             let (force, tick) = servo.step(&plant.handle(), DT);
             (braked, fault) = (braked || tick.braked, fault.or(tick.fault));
             let before = (plant.given_j(), stored(&plant), plant.true_position());
-            let depth = if s < 0.6 { -0.002 } else { 0.003 };
-            let along = 0.03 * sin(8.0 * (s.clamp(0.8, STROKE_S) - 0.8));
-            plant.advance(force, DVec3::new(along, 0.0, HEAD_M - depth), DT);
+            plant.advance(force, target(s), DT);
             let given = plant.given_j() - before.0 + stored(&plant) - before.1;
             net_j += given;
             let way = plant.true_position() - before.2;

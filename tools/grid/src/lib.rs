@@ -143,6 +143,17 @@ pub enum Path {
     Nothing,
 }
 
+impl Path {
+    /// True if the force of this tick reaches the motors.
+    fn reaches(self, tick: usize) -> bool {
+        match self {
+            Self::Servo => true,
+            Self::Sent => tick.is_multiple_of(16),
+            Self::Nothing => false,
+        }
+    }
+}
+
 /// One hand at one wall.
 #[derive(Clone, Copy, Debug)]
 pub struct Run {
@@ -312,18 +323,27 @@ impl Run {
         }
     }
 
-    /// Runs the hand.
-    ///
-    /// # Errors
-    /// The defect of a wall that makes no contact model.
-    pub fn go(&self) -> Result<Outcome, &'static str> {
-        let limits = self.limits();
+    /// Sends the models of a wall, and of the guide beside it.
+    fn send(&self, wall: &Wall, servo: &mut Servo) -> Result<(), &'static str> {
         // The wall's friction across the kick would hide the guide's gain.
         let friction = match self.guide {
             Some(_) => 0.0,
             None => FRICTION,
         };
         let live_s = (6.0 / self.rate_hz).max(0.1);
+        servo.receive(wall.contact(friction, live_s)?, Sender::Same);
+        if let Some(guide) = self.guide {
+            servo.receive_guide(guide.guide(live_s)?, Sender::Same);
+        }
+        Ok(())
+    }
+
+    /// Runs the hand.
+    ///
+    /// # Errors
+    /// The defect of a wall that makes no contact model.
+    pub fn go(&self) -> Result<Outcome, &'static str> {
+        let limits = self.limits();
         let mut servo = Servo::new(limits);
         let mut plant = Plant::omni(self.hand, self.target(0.0));
         let tip = |plant: &Plant| plant.true_position() - DVec3::Z * HEAD_M;
@@ -342,10 +362,7 @@ impl Run {
             let handle = plant.handle();
             model_wall.age();
             if let Some(wall) = link.newest(s, |s| self.wall(s)) {
-                servo.receive(wall.contact(friction, live_s)?, Sender::Same);
-                if let Some(guide) = self.guide {
-                    servo.receive_guide(guide.guide(live_s)?, Sender::Same);
-                }
+                self.send(&wall, &mut servo)?;
                 let given = Wall {
                     stiffness: wall.stiffness.min(limits.max_stiffness_n_m),
                     ..wall
@@ -354,10 +371,8 @@ impl Run {
             }
             let (wanted, tick) = servo.step(&handle, DT);
             fault = fault.or(tick.fault);
-            match self.path {
-                Path::Servo => force = wanted,
-                Path::Sent if number % 16 == 0 => force = wanted,
-                Path::Sent | Path::Nothing => {}
+            if self.path.reaches(number) {
+                force = wanted;
             }
             let (from, before_j) = (tip(&plant), plant.given_j());
             plant.advance(force, self.target(s), DT);

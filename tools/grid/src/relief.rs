@@ -6,16 +6,17 @@
 
 use glam::DVec3;
 use maulstick_num::sin;
-use maulstick_types::haptics::{ContactModel, ForceLaw, HeightPatch, height_bytes};
+use maulstick_types::haptics::{ContactModel, FluidForce, ForceLaw, HeightPatch, height_bytes};
 
 use maulstick_haptics::contact::Contact;
 use maulstick_haptics::extent::Extent;
 use maulstick_haptics::fluid::Fluid;
 use maulstick_haptics::friction::ramp;
+use maulstick_haptics::guide::Guide;
 use maulstick_haptics::plant::Plant;
 use maulstick_haptics::servo::Servo;
 use maulstick_haptics::servo::fault::Fault;
-use maulstick_haptics::servo::tick::Sender;
+use maulstick_haptics::servo::tick::{Sender, Tick};
 
 use super::fluid::Film;
 use super::ledger::Ledger;
@@ -103,6 +104,16 @@ pub enum Tilt {
     Upright,
 }
 
+impl Tilt {
+    /// The force that reaches the motors.
+    fn of(self, force: DVec3, normal: DVec3) -> DVec3 {
+        match self {
+            Self::BySlope => force,
+            Self::Upright => normal * force.dot(normal),
+        }
+    }
+}
+
 /// One hand over one ground.
 #[derive(Clone, Copy, Debug)]
 pub struct ReliefRun {
@@ -162,6 +173,112 @@ fn painting(run: &Run, guide: &GuideLine, s: f64) -> DVec3 {
     run.target(resting_s) + drawn + above
 }
 
+/// Models that the servo is sent.
+struct Models {
+    contact: Contact,
+    /// The patch of the contact, once one was sent.
+    sent: Option<HeightPatch>,
+    guide: Option<Guide>,
+}
+
+impl Models {
+    fn new(of: &ReliefRun) -> Result<Self, &'static str> {
+        let guide = of.run.guide.map(|guide| guide.guide(of.live_s()));
+        Ok(Self {
+            contact: of.contact(&of.run.wall(0.0), HeightPatch::flat())?,
+            sent: None,
+            guide: guide.transpose()?,
+        })
+    }
+
+    /// Those of a wall around a place.
+    fn renew(&mut self, of: &ReliefRun, wall: &Wall, around: DVec3) -> Result<(), &'static str> {
+        let patch = of.ground.patch(wall, around);
+        // Over a wall that rests most patches are the one before.
+        if of.run.motion != Motion::Still || self.sent.as_ref() != Some(&patch) {
+            self.contact = of.contact(wall, patch.clone())?;
+            self.sent = Some(patch);
+        }
+        Ok(())
+    }
+
+    fn send(&self, servo: &mut Servo) {
+        servo.receive(self.contact, Sender::Same);
+        if let Some(guide) = self.guide {
+            servo.receive_guide(guide, Sender::Same);
+        }
+    }
+}
+
+/// A hand that holds still: the places of its tip, and the sums of the force along the normal and of the model's own, N.
+struct Steady {
+    extent: Extent,
+    push: f64,
+    asked: f64,
+}
+
+impl Steady {
+    const NONE: Self = Self {
+        extent: Extent::NONE,
+        push: 0.0,
+        asked: 0.0,
+    };
+
+    fn note(&mut self, tip: DVec3, push: f64, asked: f64) {
+        self.extent.include(tip);
+        self.push += push;
+        self.asked += asked;
+    }
+}
+
+/// Forces that the servo asked for.
+#[derive(Default)]
+struct Wishes {
+    newest: DVec3,
+    most_n: f64,
+    slew_n_s: f64,
+    braked: bool,
+    fault: Option<Fault>,
+}
+
+impl Wishes {
+    fn note(&mut self, force: DVec3, tick: &Tick) {
+        self.most_n = self.most_n.max(force.length());
+        self.slew_n_s = self.slew_n_s.max((force - self.newest).length() / DT);
+        self.newest = force;
+        self.braked |= tick.braked;
+        self.fault = self.fault.or(tick.fault);
+    }
+}
+
+/// A film that the brush carries along, and the link from its solver.
+struct Paint {
+    film: Film,
+    link: Link<FluidForce>,
+    carried: DVec3,
+}
+
+impl Paint {
+    fn new(film: Film) -> Self {
+        Self {
+            film,
+            link: Link::new(film.rate_hz, film.jitter, 2),
+            carried: DVec3::ZERO,
+        }
+    }
+
+    /// The message that arrives at a time, under a brush that touches the film by a share.
+    fn newest(&mut self, s: f64, velocity: DVec3, touch: f64) -> Option<FluidForce> {
+        self.carried = self.film.follow(self.carried, velocity, touch);
+        let (film, carried) = (self.film, self.carried);
+        self.link.newest(s, |_| film.message(velocity, carried))
+    }
+
+    fn kept_j(&self) -> f64 {
+        self.film.kept_j(self.carried)
+    }
+}
+
 impl ReliefRun {
     /// When the hand is judged to hold still, s.
     fn still_s(&self) -> [f64; 2] {
@@ -216,6 +333,12 @@ impl ReliefRun {
         self.run.target(s) + DVec3::X * aside + kick + DVec3::Y * (1e-3 * sin(3.0 * s.min(MOVED_S)))
     }
 
+    /// Force of the guide on a tip at a place.
+    fn guided(&self, tip: DVec3) -> DVec3 {
+        let guide = self.run.guide;
+        guide.map_or(DVec3::ZERO, |it| it.force(tip - DVec3::Z * HEAD_M))
+    }
+
     /// Runs the hand.
     ///
     /// # Errors
@@ -224,22 +347,12 @@ impl ReliefRun {
         let mut servo = Servo::new(self.run.limits());
         let mut plant = Plant::omni(self.run.hand, self.target(0.0));
         plant.coulomb_n = self.coulomb_n;
-        let (mut contact, mut sent) = (
-            self.contact(&self.run.wall(0.0), HeightPatch::flat())?,
-            None,
-        );
-        let guide = self.run.guide.map(|guide| guide.guide(self.live_s()));
-        let guide = guide.transpose()?;
-        let mut ledger = Ledger::new(contact, self.run.guide);
+        let mut models = Models::new(self)?;
+        let mut ledger = Ledger::new(models.contact, self.run.guide);
         let mut link = Link::new(self.run.rate_hz, self.run.jitter, 1);
-        let mut paint = self
-            .film
-            .map(|film| (film, Link::new(film.rate_hz, film.jitter, 2), DVec3::ZERO));
-        let mut extent = Extent::NONE;
-        let (mut force, mut given) = (DVec3::ZERO, DVec3::ZERO);
-        let (mut push, mut asked, mut across_n): (f64, f64, f64) = (0.0, 0.0, 0.0);
-        let (mut most_n, mut slew_n_s): (f64, f64) = (0.0, 0.0);
-        let (mut braked, mut fault) = (false, None);
+        let mut paint = self.film.map(Paint::new);
+        let (mut force, mut across_n) = (DVec3::ZERO, 0.0f64);
+        let (mut steady, mut wishes) = (Steady::NONE, Wishes::default());
         let still_s = self.still_s();
         for number in 0..((END_S + self.settle_s()) / DT) as usize {
             let s = number as f64 * DT;
@@ -247,69 +360,46 @@ impl ReliefRun {
             let tip = handle.position - DVec3::Z * HEAD_M;
             ledger.age();
             if let Some((wall, around)) = link.newest(s, |s| (self.run.wall(s), tip)) {
-                let patch = self.ground.patch(&wall, around);
-                // Over a wall that rests most patches are the one before.
-                if self.run.motion != Motion::Still || sent.as_ref() != Some(&patch) {
-                    contact = self.contact(&wall, patch.clone())?;
-                    sent = Some(patch);
-                }
-                servo.receive(contact, Sender::Same);
-                if let Some(guide) = guide {
-                    servo.receive_guide(guide, Sender::Same);
-                }
-                ledger.change(contact, handle.position);
+                models.renew(self, &wall, around)?;
+                models.send(&mut servo);
+                ledger.change(models.contact, handle.position);
             }
-            if let Some((film, link, carried)) = &mut paint {
+            if let Some(paint) = &mut paint {
                 let touch = ramp(ledger.depth(handle.position));
-                *carried = film.follow(*carried, handle.velocity, touch);
-                if let Some(message) = link.newest(s, |_| film.message(handle.velocity, *carried)) {
+                if let Some(message) = paint.newest(s, handle.velocity, touch) {
                     servo.receive_fluid(Fluid::new(&message, 1.0)?);
                 }
             }
             let (wanted, tick) = servo.step(&handle, DT);
-            (braked, fault) = (braked || tick.braked, fault.or(tick.fault));
-            most_n = most_n.max(wanted.length());
-            slew_n_s = slew_n_s.max((wanted - given).length() / DT);
-            given = wanted;
-            match self.run.path {
-                Path::Servo => force = wanted,
-                Path::Sent if number % 16 == 0 => force = wanted,
-                Path::Sent | Path::Nothing => {}
+            wishes.note(wanted, &tick);
+            if self.run.path.reaches(number) {
+                force = wanted;
             }
             let normal = ledger.normal();
-            let force = match self.tilt {
-                Tilt::BySlope => force,
-                Tilt::Upright => normal * force.dot(normal),
-            };
+            let force = self.tilt.of(force, normal);
             let before = plant;
-            if fault.is_none() && self.run.path == Path::Servo {
+            if wishes.fault.is_none() && self.run.path == Path::Servo {
                 ledger.soften(&handle, tick.stiffness_n_m, before.true_position());
             }
             plant.advance(force, self.target(s), DT);
-            let kept_j = paint
-                .as_ref()
-                .map_or(0.0, |(film, _, carried)| film.kept_j(*carried));
-            ledger.book(&before, &plant, kept_j);
+            ledger.book(&before, &plant, paint.as_ref().map_or(0.0, Paint::kept_j));
             across_n = across_n.max((force - normal * force.dot(normal)).length());
             if (still_s[0]..still_s[1]).contains(&s) {
                 let to = plant.true_position();
-                extent.include(to);
-                let guide = self.run.guide;
-                let guided = guide.map_or(DVec3::ZERO, |it| it.force(to - DVec3::Z * HEAD_M));
-                push += (force - guided).dot(normal);
-                asked += ledger.force(to).dot(normal);
+                let push = (force - self.guided(to)).dot(normal);
+                steady.note(to, push, ledger.force(to).dot(normal));
             }
         }
         Ok(ReliefOutcome {
-            wobble_m: extent.peak_to_peak_m(),
+            wobble_m: steady.extent.peak_to_peak_m(),
             net_j: ledger.most_j,
             rise_j: ledger.rise_j,
-            share: push / asked,
+            share: steady.push / steady.asked,
             across_n,
-            most_n,
-            slew_n_s,
-            braked,
-            fault,
+            most_n: wishes.most_n,
+            slew_n_s: wishes.slew_n_s,
+            braked: wishes.braked,
+            fault: wishes.fault,
         })
     }
 

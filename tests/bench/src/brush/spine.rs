@@ -43,6 +43,46 @@ pub(crate) fn settings() -> Settings {
     }
 }
 
+/// Both solvers on the poses of a stroke.
+#[derive(Default)]
+struct Samples {
+    /// Times of ours and of slsqp, µs.
+    ours: Vec<f64>,
+    theirs: Vec<f64>,
+    /// Our energy above that of slsqp, as a share, where that is feasible.
+    excess: Vec<f64>,
+    /// Our residuals, as shares of the stiffest joint.
+    residual: Vec<f64>,
+    /// Our iterations.
+    iterations: Vec<f64>,
+    /// Number of poses in contact.
+    touching: usize,
+}
+
+impl Samples {
+    /// Rows of a spine of so many joints on so many poses.
+    fn report(self, report: &mut Report, joints: usize, poses: usize) {
+        let excess = sorted(self.excess);
+        let median = |values: Vec<f64>| quantile(&sorted(values), 0.5);
+        let worst = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let solved = excess.len() as f64 / self.ours.len() as f64;
+        let in_contact = self.touching as f64 / poses as f64;
+        for (name, value, unit) in [
+            ("in_contact", in_contact, "of poses"),
+            ("energy_excess", quantile(&excess, 0.99), ""),
+            ("energy_excess_worst", worst(&excess), ""),
+            ("residual", worst(&self.residual), ""),
+            ("iterations", median(self.iterations), ""),
+            ("slsqp_feasible", solved, "of poses"),
+        ] {
+            report.row(&format!("spine{joints}.{name}"), value, unit);
+        }
+        let times = (median(self.ours), median(self.theirs));
+        let name = format!("spine{joints}.time");
+        report.beside(&name, times.0, "µs", ("slsqp", times.1));
+    }
+}
+
 /// Both on the poses of a stroke, each from our state at the pose before.
 pub(crate) fn beside_slsqp(report: &mut Report, joints: usize) -> Result<(), UserError> {
     let (spine, settings) = (spine(joints), settings());
@@ -50,9 +90,7 @@ pub(crate) fn beside_slsqp(report: &mut Report, joints: usize) -> Result<(), Use
     let mut solver = Solver::default();
     let mut constraints = ContactConstraint::on_surface(joints);
     let mut shape = SpineShape::straight(poses[0].translation, poses[0].rotation, joints);
-    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
-    let (mut excess, mut residual, mut iterations) = (Vec::new(), Vec::new(), Vec::new());
-    let mut touching = 0;
+    let mut found = Samples::default();
     for pose in &poses {
         shape.carry(pose.translation, pose.rotation);
         let (before, constraints_before) = (shape.clone(), constraints.clone());
@@ -62,12 +100,12 @@ pub(crate) fn beside_slsqp(report: &mut Report, joints: usize) -> Result<(), Use
             constraints.clone_from(&constraints_before);
             let clock = Instant::now();
             let solution = solver.solve(&spine, &mut shape, &mut constraints, &[], &settings);
-            ours.push(clock.elapsed().as_secs_f64() * 1e6);
+            found.ours.push(clock.elapsed().as_secs_f64() * 1e6);
             if !solution.converged {
                 return Err(UserError::failure("a pose of the stroke has no solution"));
             }
-            residual.push(solution.residual / spine.stiffest());
-            iterations.push(solution.iterations as f64);
+            found.residual.push(solution.residual / spine.stiffest());
+            found.iterations.push(solution.iterations as f64);
             let last_constraints = solver.last_constraints().to_vec();
             let problem = Angles::new(
                 &spine,
@@ -78,34 +116,15 @@ pub(crate) fn beside_slsqp(report: &mut Report, joints: usize) -> Result<(), Use
             );
             let clock = Instant::now();
             let minimum = problem.minimise(&start);
-            theirs.push(clock.elapsed().as_secs_f64() * 1e6);
+            found.theirs.push(clock.elapsed().as_secs_f64() * 1e6);
             let least = problem.energy_of(&shape).total() / spine.stiffest();
             if minimum.penetration <= FEASIBLE {
-                excess.push(least / minimum.energy - 1.0);
+                found.excess.push(least / minimum.energy - 1.0);
             }
         }
-        touching += usize::from(constraints.iter().any(ContactConstraint::touches));
+        found.touching += usize::from(constraints.iter().any(ContactConstraint::touches));
     }
-    let excess = sorted(excess);
-    let median = |values: Vec<f64>| quantile(&sorted(values), 0.5);
-    let worst = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let solved = excess.len() as f64 / ours.len() as f64;
-    let mut row = |name: &str, value: f64, unit: &'static str| {
-        report.row(&format!("spine{joints}.{name}"), value, unit);
-    };
-    row(
-        "in_contact",
-        touching as f64 / poses.len() as f64,
-        "of poses",
-    );
-    row("energy_excess", quantile(&excess, 0.99), "");
-    row("energy_excess_worst", worst(&excess), "");
-    row("residual", worst(&residual), "");
-    row("iterations", median(iterations), "");
-    row("slsqp_feasible", solved, "of poses");
-    let times = (median(ours), median(theirs));
-    let name = format!("spine{joints}.time");
-    report.beside(&name, times.0, "µs", ("slsqp", times.1));
+    found.report(report, joints, poses.len());
     Ok(())
 }
 

@@ -20,12 +20,12 @@ use maulstick_gpu::{Choice, Device};
 use maulstick_models::model_called;
 use maulstick_num::fork_join::with_threads;
 use maulstick_optics::PaintLibrary;
-use maulstick_painting::edits::{Fill, FillPaint, Load};
+use maulstick_painting::edits::{Fill, FillPaint, common};
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_rig::UserError;
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::scene::CANVAS;
-use maulstick_types::values::{BrushName, FilmThickness};
+use maulstick_types::values::FilmThickness;
 use maulstick_types::{Edit, Pose};
 
 use crate::header::header_of;
@@ -72,6 +72,35 @@ impl Means {
     }
 }
 
+/// States of a brush that goes once round the middle of a canvas of this side, on cells of `cell_m`.
+fn circle(file: &BrushFile, size_m: f64, cell_m: f64) -> Vec<BrushState> {
+    let radius_m = 0.25 * size_m;
+    let turn = STEP_CELLS * cell_m / radius_m;
+    let state = |state: usize| {
+        let (sine, cosine) = maulstick_num::sin_cos(turn * state as f64);
+        let at = [cosine, sine].map(|way| 0.5 * size_m + radius_m * way);
+        BrushState {
+            device: 1,
+            device_epoch: 1,
+            device_seq: 0,
+            solves: vec![Solve {
+                event_ns: 0,
+                stroke: 1,
+                surface: CANVAS,
+                flags: 0,
+                pose: Pose {
+                    position_m: [at[0], at[1], 0.45 * file.length_m()],
+                    orientation: [0.0, 0.0, 0.0, 1.0],
+                },
+                zoom: 1.0,
+                angles_rad: vec![[0.3, 0.3]; file.spines.all_joints()],
+                contacts: Vec::new(),
+            }],
+        }
+    };
+    (0..STATES).map(state).collect()
+}
+
 /// A brush that goes round over wet paint.
 struct Round {
     sequencer: Sequencer,
@@ -109,11 +138,7 @@ impl Round {
             .define_brush(BRUSH, file.clone())
             .expect("a brush");
         let mixture = || FILM.parse().map_err(fault);
-        let load = Load {
-            mixture: mixture()?,
-            beside: None,
-            brush: BrushName::new(BRUSH)?,
-        };
+        let load = common::load(BRUSH, mixture()?, None)?;
         let fill = Fill {
             paint: FillPaint::Mixture {
                 mixture: mixture()?,
@@ -125,32 +150,8 @@ impl Round {
             sequencer.edit(edit).map_err(fault)?;
         }
         let size_m = f64::from(cells) * setup.cell_m;
-        let radius_m = 0.25 * size_m;
-        let turn = STEP_CELLS * setup.cell_m / radius_m;
-        let states = (0..STATES).map(|state| {
-            let (sine, cosine) = maulstick_num::sin_cos(turn * state as f64);
-            let at = [cosine, sine].map(|way| 0.5 * size_m + radius_m * way);
-            BrushState {
-                device: 1,
-                device_epoch: 1,
-                device_seq: 0,
-                solves: vec![Solve {
-                    event_ns: 0,
-                    stroke: 1,
-                    surface: CANVAS,
-                    flags: 0,
-                    pose: Pose {
-                        position_m: [at[0], at[1], 0.45 * file.length_m()],
-                        orientation: [0.0, 0.0, 0.0, 1.0],
-                    },
-                    zoom: 1.0,
-                    angles_rad: vec![[0.3, 0.3]; file.spines.all_joints()],
-                    contacts: Vec::new(),
-                }],
-            }
-        });
         Ok(Self {
-            states: states.collect(),
+            states: circle(&file, size_m, setup.cell_m),
             sequencer,
             seq: 0,
             traffic,

@@ -75,6 +75,45 @@ impl Sender {
     }
 }
 
+/// The pen somewhere.
+fn sample(mut noise: impl FnMut() -> f64) -> StylusSample {
+    StylusSample {
+        senses: axes::POSITION | axes::PRESSURE,
+        in_range: true,
+        pose: StylusPose::Contact {
+            point_m: [noise(), noise(), 0.0],
+            tilt_rad: [noise(), noise()],
+            twist_rad: noise(),
+            pressure: noise() + 0.5,
+        },
+        ..StylusSample::away()
+    }
+}
+
+/// The brush at a millisecond.
+fn state(ms: u64, at_ns: u64, mut noise: impl FnMut() -> f64) -> BrushState {
+    let solve = |event_ns: u64, angles_rad: Vec<[f32; 2]>| Solve {
+        event_ns,
+        stroke: ms / 2000,
+        surface: 0,
+        flags: 0,
+        pose: Pose::IDENTITY,
+        zoom: 1.0,
+        angles_rad,
+        contacts: Vec::new(),
+    };
+    let mut angles = || {
+        let joints = 0..2 * SPINES;
+        joints.map(|_| [noise() as f32, noise() as f32]).collect()
+    };
+    BrushState {
+        device: name_hash("pen"),
+        device_epoch: 1,
+        device_seq: ms,
+        solves: (0..2).map(|step| solve(at_ns + step, angles())).collect(),
+    }
+}
+
 /// Writes it.
 pub(super) fn write(path: &Path) -> Result<(), UserError> {
     let mut dice = Pcg64::seed_from_u64(7);
@@ -96,40 +135,9 @@ pub(super) fn write(path: &Path) -> Result<(), UserError> {
     let mut credit = Sender::new::<PaintConsumed>("paint/consumed", "paint")?;
     for ms in 0..SECONDS * 1000 {
         let at_ns = ms * 1_000_000;
-        let sample = StylusSample {
-            senses: axes::POSITION | axes::PRESSURE,
-            in_range: true,
-            pose: StylusPose::Contact {
-                point_m: [noise(), noise(), 0.0],
-                tilt_rad: [noise(), noise()],
-                twist_rad: noise(),
-                pressure: noise() + 0.5,
-            },
-            ..StylusSample::away()
-        };
-        hand.send(&mut to, at_ns, &sample)?;
+        hand.send(&mut to, at_ns, &sample(&mut noise))?;
         if ms % 4 == 0 {
-            let solve = |event_ns: u64, angles_rad: Vec<[f32; 2]>| Solve {
-                event_ns,
-                stroke: ms / 2000,
-                surface: 0,
-                flags: 0,
-                pose: Pose::IDENTITY,
-                zoom: 1.0,
-                angles_rad,
-                contacts: Vec::new(),
-            };
-            let mut angles = || {
-                let joints = 0..2 * SPINES;
-                joints.map(|_| [noise() as f32, noise() as f32]).collect()
-            };
-            let state = BrushState {
-                device: name_hash("pen"),
-                device_epoch: 1,
-                device_seq: ms,
-                solves: (0..2).map(|step| solve(at_ns + step, angles())).collect(),
-            };
-            brush.send(&mut to, at_ns, &state)?;
+            brush.send(&mut to, at_ns, &state(ms, at_ns, &mut noise))?;
         }
         if ms % 20 == 0 {
             let own = BrushCredit {

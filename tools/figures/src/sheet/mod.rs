@@ -26,6 +26,7 @@ use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_rig::UserError;
 use maulstick_session::Offline;
 use maulstick_types::Mixture;
+use maulstick_ui::render::brush::thumbnail::brush_thumbnail;
 
 use maulstick::page::Page;
 use maulstick_painting_setup::refused;
@@ -87,6 +88,23 @@ impl Sheet {
     fn paste(&mut self, picture: &Picture, at_mm: [f64; 2]) {
         let at = at_mm.map(|mm| self.pixels(mm));
         self.page.paste(picture, at);
+    }
+
+    /// Copies a panel beside its words, with its upper edge here.
+    fn put(&mut self, panel: &Picture, y_mm: f64) {
+        self.paste(panel, [SIDE_MM + GAP_MM, y_mm]);
+    }
+
+    /// Portrait, name and width of a brush beside its panel, whose upper edge is here.
+    fn portray(&mut self, kind: &str, file: &BrushFile, y_mm: f64) {
+        let [across, up] = [SIDE_MM - 20.0, marks::PANEL_MM[1]].map(|mm| self.pixels(mm));
+        let scale = 1e3 * PORTRAIT_SCALE / self.cell_mm;
+        let head = brush_thumbnail(file, across, up, scale);
+        let at = [18.75, y_mm].map(|mm| self.pixels(mm));
+        self.page.portray(&head, at);
+        self.write(kind, [GAP_MM, y_mm + 6.5], 6.0);
+        let width = format!("{} mm", file.head.width_mm);
+        self.write(&width, [GAP_MM, y_mm + 12.0], 4.0);
     }
 
     /// A title and lines of words beside a panel whose upper edge is here.
@@ -262,7 +280,6 @@ pub(crate) fn sheet(
         + double.len() as f64 * (wide_row + GAP_MM)
         + blenders.len() as f64 * (soft_row + GAP_MM);
     let mut sheet = Sheet::new([SIDE_MM + across + 2.0 * GAP_MM, height], cell_mm)?;
-    let beside = SIDE_MM + GAP_MM;
     let mut y = GAP_MM;
     let mut done = 0;
     let mut tell = || {
@@ -271,16 +288,8 @@ pub(crate) fn sheet(
     };
     for (kind, _) in LIBRARY {
         let file = library_brush(kind)?;
-        let size = [SIDE_MM - 20.0, row].map(|mm| sheet.pixels(mm));
-        let scale = 1e3 * PORTRAIT_SCALE / cell_mm;
-        let head =
-            maulstick_ui::render::brush::thumbnail::brush_thumbnail(&file, size[0], size[1], scale);
-        let at = [18.75, y].map(|mm| sheet.pixels(mm));
-        sheet.page.portray(&head, at);
-        sheet.write(kind, [GAP_MM, y + 6.5], 6.0);
-        let width = format!("{} mm", file.head.width_mm);
-        sheet.write(&width, [GAP_MM, y + 12.0], 4.0);
-        sheet.paste(&brush_panel(&file, library.clone(), cell_mm)?, [beside, y]);
+        sheet.portray(kind, &file, y);
+        sheet.put(&brush_panel(&file, library.clone(), cell_mm)?, y);
         y += row + GAP_MM;
         tell();
     }
@@ -295,8 +304,7 @@ pub(crate) fn sheet(
             "C-stroke",
         ];
         sheet.caption("one stroke", &words, y);
-        let panel = one_stroke_panel(&file, library.clone(), cell_mm)?;
-        sheet.paste(&panel, [beside, y]);
+        sheet.put(&one_stroke_panel(&file, library.clone(), cell_mm)?, y);
         y += wide_row + GAP_MM;
         tell();
     }
@@ -307,8 +315,7 @@ pub(crate) fn sheet(
             "drawn over the right half",
         ];
         sheet.caption("softening", &words, y);
-        let panel = softening_panel(&file, library.clone(), cell_mm)?;
-        sheet.paste(&panel, [beside, y]);
+        sheet.put(&softening_panel(&file, library.clone(), cell_mm)?, y);
         y += soft_row + GAP_MM;
         tell();
     }
