@@ -102,7 +102,7 @@ fn beside(name: &str) -> Result<PathBuf, UserError> {
     Ok(own.with_file_name(name))
 }
 
-/// Command line of a program in `tools/`.
+/// Commands of maulstick in a program of their own
 #[derive(Parser, Debug)]
 #[command(
     name = "maulstick",

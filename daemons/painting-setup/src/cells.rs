@@ -4,15 +4,13 @@ use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, RigConfig};
 use maulstick_types::command::slow_canvas::{SLOW_CELL_M, SLOW_CELLS, is_slow};
-use maulstick_types::limits::CELLS_IN_ALL;
+use maulstick_types::limits::{CELLS_IN_ALL, CELLS_MAX};
 use maulstick_types::values::{CellSide, Quantity};
 use thiserror::Error;
 
 /// Side of a cell in pictures, mm. Live painting uses those of its rig, which are larger, so that a broad brush keeps
 /// up with the hand.
 pub const PICTURE_CELL_MM: f64 = 0.125;
-/// Cells of a canvas either way.
-const SIDE: std::ops::RangeInclusive<f64> = 1.0..=65_536.0;
 
 /// The cells of a sheet.
 #[derive(Args, Clone, Copy, Debug)]
@@ -74,7 +72,11 @@ pub fn picture_settings() -> RigConfig {
 pub fn check_canvas(canvas: &CanvasSection) -> Result<(), UserError> {
     let [width, height] = [canvas.width_mm, canvas.height_mm];
     let cells = [width, height].map(|mm| (mm / canvas.cell_mm).round());
-    if cells.iter().all(|cells| SIDE.contains(cells)) && cells[0] * cells[1] <= CELLS_IN_ALL {
+    if cells
+        .iter()
+        .all(|cells| (1.0..=CELLS_MAX.into()).contains(cells))
+        && cells[0] * cells[1] <= CELLS_IN_ALL
+    {
         return Ok(());
     }
     Err(UserError::usage(format!(
@@ -83,8 +85,7 @@ pub fn check_canvas(canvas: &CanvasSection) -> Result<(), UserError> {
     ))
     .at("--cell-mm, --size")
     .help(format!(
-        "choose 1 to {} cells either way, {:.0} million in all: larger cells, or a smaller canvas",
-        SIDE.end(),
+        "choose 1 to {CELLS_MAX} cells either way, {:.0} million in all: larger cells, or a smaller canvas",
         CELLS_IN_ALL * 1e-6
     )))
 }

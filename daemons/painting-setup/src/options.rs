@@ -7,6 +7,8 @@ use maulstick_optics::PaintLibrary;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{BACKENDS, BrushSection, RigConfig};
 use maulstick_types::Mixture;
+use maulstick_types::limits::CELLS_MAX;
+use maulstick_types::region::sides;
 use thiserror::Error;
 
 use crate::brushes::brush_file;
@@ -81,7 +83,7 @@ pub enum SizeError {
     #[error("'{0}' is not a size such as 1024x768")]
     Malformed(String),
     /// Too few cells, or too many.
-    #[error("a canvas has 1 to 65536 cells either way, not {0}")]
+    #[error("a canvas has 1 to {CELLS_MAX} cells either way, not {0}")]
     OutOfRange(String),
 }
 
@@ -90,11 +92,8 @@ pub enum SizeError {
 /// # Errors
 /// A [`SizeError`] for another text.
 pub fn parse_size(text: &str) -> Result<[u32; 2], SizeError> {
-    let wrong = || SizeError::Malformed(text.to_owned());
-    let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
-    let parse = |side: &str| side.trim().parse::<u32>().map_err(|_| wrong());
-    let size = [parse(width)?, parse(height)?];
-    if size.iter().any(|side| !(1..=65_536).contains(side)) {
+    let size = sides(text).ok_or_else(|| SizeError::Malformed(text.to_owned()))?;
+    if size.iter().any(|side| !(1..=CELLS_MAX).contains(side)) {
         return Err(SizeError::OutOfRange(text.to_owned()));
     }
     Ok(size)

@@ -6,6 +6,7 @@ use maulstick_bus::BusError;
 use maulstick_motion::MotionError;
 use maulstick_rig::UserError;
 use maulstick_session::recorded::SessionFault;
+use maulstick_streams::translate::ReadError;
 use maulstick_types::DecodeError;
 
 /// Reason why a rig could not be recorded, or a recording not be played.
@@ -56,7 +57,7 @@ pub enum RecorderError {
         /// Topic, or kind of message.
         what: String,
         /// Error of the table or the codec.
-        error: String,
+        error: ReadError,
         /// The recording, where it is known.
         file: Option<PathBuf>,
     },

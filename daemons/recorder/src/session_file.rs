@@ -226,7 +226,7 @@ impl SessionReader<'_> {
         let read = topic.read::<M>(message);
         read.map_err(|error| RecorderError::Unreadable {
             what: topic.name.clone(),
-            error: error.to_string(),
+            error,
             file: Some(self.file.clone()),
         })
     }

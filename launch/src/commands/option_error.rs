@@ -44,14 +44,3 @@ pub(super) fn number_within(
     let (least, most) = (range.start(), range.end());
     value.ok_or_else(|| OptionError::unexpected(text, format!("a {called} from {least} to {most}")))
 }
-
-/// Reads two numbers with an `x` between them.
-///
-/// # Errors
-/// An [`OptionError`] for another text.
-pub(super) fn sides(text: &str, expected: &str) -> Result<[f64; 2], OptionError> {
-    let side = |side: &str| side.trim().parse::<f64>().ok();
-    let sides = text.split_once(['x', 'X', '×']);
-    let sides = sides.and_then(|(width, height)| Some([side(width)?, side(height)?]));
-    sides.ok_or_else(|| OptionError::unexpected(text, expected))
-}

@@ -7,12 +7,14 @@ use std::collections::BTreeMap;
 use std::os::unix::process::CommandExt as _;
 use std::path::Path;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use maulstick_rig::UserError;
 use maulstick_rig::program::own_program;
 use maulstick_rig::user_error::EXIT_USAGE;
 use nix::sys::signal::{Signal, killpg};
+use nix::sys::wait::{Id, WaitPidFlag, waitid};
 use nix::unistd::Pid;
 use tokio::signal::unix::{Signal as SignalStream, SignalKind, signal};
 
@@ -20,8 +22,6 @@ use crate::up::plan::NodeSpec;
 
 /// Longest wait for the ends of killed processes.
 const LONGEST_END: Duration = Duration::from_secs(2);
-/// Interval at which they are looked for.
-const LOOK: Duration = Duration::from_millis(5);
 
 /// End of a process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,15 +145,27 @@ impl Drop for Processes {
             .values()
             .for_each(|process| process.signal(Signal::SIGKILL));
         let give_up = Instant::now() + LONGEST_END;
-        let is_running = |process: &mut Process| matches!(process.child.try_wait(), Ok(None));
-        for (name, process) in &mut self.running {
-            while is_running(process) {
-                if Instant::now() >= give_up {
-                    tracing::warn!("the killed process of node '{name}' does not end");
-                    break;
-                }
-                std::thread::park_timeout(LOOK);
+        let (ended, all_ended) = mpsc::channel();
+        for (name, process) in &self.running {
+            let (name, id, ended) = (name.clone(), process.child.id(), ended.clone());
+            std::thread::spawn(move || {
+                // It is left to its parent, which may have it already.
+                let end = WaitPidFlag::WEXITED | WaitPidFlag::WNOWAIT;
+                waitid(Id::Pid(Pid::from_raw(id as i32)), end).ok();
+                ended.send(name).ok();
+            });
+        }
+        while !self.running.is_empty() {
+            let left = give_up.saturating_duration_since(Instant::now());
+            let Ok(name) = all_ended.recv_timeout(left) else {
+                break;
+            };
+            if let Some(mut process) = self.running.remove(&name) {
+                process.child.try_wait().ok();
             }
+        }
+        for name in self.running.keys() {
+            tracing::warn!("the killed process of node '{name}' does not end");
         }
     }
 }

@@ -23,8 +23,10 @@ pub const DEVICE_NAME_MAX: usize = 128;
 pub const DEVICE_MAX: usize = 1 << 16;
 /// Most bytes of a spectrum.
 pub const SPECTRUM_MAX: usize = 1 << 18;
+/// Most cells of a canvas along each side.
+pub const CELLS_MAX: u32 = 65_536;
 /// Cells of a canvas along each side: half of one is rounded up.
-pub const CELLS: RangeInclusive<f64> = 0.5..=65_536.0;
+pub const CELLS: RangeInclusive<f64> = 0.5..=CELLS_MAX as f64;
 /// Most cells of a new canvas: twice what a large machine shows in comfort.
 pub const CELLS_IN_ALL: f64 = 1_073_741_824.0;
 /// Most wells of a surface.

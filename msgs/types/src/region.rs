@@ -89,16 +89,24 @@ impl FromStr for Region {
         let [x, y, size] = parts[..] else {
             return Err(wrong());
         };
-        let (width, height) = size.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
         let metres = |mm: &str| mm.trim().parse::<f64>().map(|mm| mm * 1e-3);
         let metres = |mm: &str| metres(mm).map_err(|_| wrong());
+        let size_mm: [f64; 2] = sides(size).ok_or_else(wrong)?;
         let region = Self {
             corner_m: [metres(x)?, metres(y)?],
-            size_m: [metres(width)?, metres(height)?],
+            size_m: size_mm.map(|mm| mm * 1e-3),
         };
         region.check()?;
         Ok(region)
     }
+}
+
+/// Reads `WxH`; `None` for another text.
+#[must_use]
+pub fn sides<T: FromStr>(text: &str) -> Option<[T; 2]> {
+    let (width, height) = text.split_once(['x', 'X', '×'])?;
+    let side = |side: &str| side.trim().parse().ok();
+    Some([side(width)?, side(height)?])
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Errors of lights and grounds.
 
 use maulstick_canvas::CanvasError;
+use maulstick_optics::spectrum_error::{DarkError, TableError};
 use maulstick_types::command::advice::Advice;
 use maulstick_types::nearest::choice;
 use maulstick_types::scene::LightError;
@@ -15,8 +16,8 @@ pub enum LookError {
     #[error(transparent)]
     Light(#[from] LightError),
     /// A spectrum that does not reach the eye.
-    #[error("{0}")]
-    Dark(String),
+    #[error(transparent)]
+    Dark(#[from] DarkError),
     /// An unknown illuminant.
     #[error("there is no illuminant called '{name}'")]
     NoIlluminant {
@@ -35,7 +36,7 @@ pub enum LookError {
     },
     /// A text that is not a table of reflectances.
     #[error("not a spectrum of a ground: {0}")]
-    Spectrum(String),
+    Spectrum(#[from] TableError),
 }
 
 impl LookError {

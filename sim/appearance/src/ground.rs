@@ -281,8 +281,7 @@ pub(crate) fn ground_reflectance(name: &str) -> Result<Spectrum, LookError> {
 /// Reads a table of nm,reflectance.
 fn parsed(bytes: &[u8]) -> Result<Reflectance, LookError> {
     let text = std::str::from_utf8(bytes).unwrap_or_default();
-    Reflectance::parse(text.trim_start_matches('\u{feff}'))
-        .map_err(|error| LookError::Spectrum(error.to_string()))
+    Ok(Reflectance::parse(text.trim_start_matches('\u{feff}'))?)
 }
 
 /// Adds a spectrum and returns its hash.

@@ -20,9 +20,7 @@ pub fn studio_settings(light: &Light) -> Result<StudioSettings, LookError> {
                 name: light.illuminant.clone(),
                 power: Spectrum(power),
             };
-            found
-                .check()
-                .map_err(|dark| LookError::Dark(dark.to_string()))?;
+            found.check()?;
             found
         }
         Err(_) => illuminant_named(&light.illuminant)?,

@@ -9,6 +9,7 @@ use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_canvas::relief::tooth_picture::PictureTooth;
 use maulstick_models::{MODELS, model_called};
 use maulstick_optics::PaintLibrary;
+use maulstick_types::limits::CELLS_MAX;
 use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
 use maulstick_types::values::CellSide;
 use maulstick_types::{Mixture, Pose};
@@ -197,7 +198,7 @@ pub fn wells_of(mixtures: &[Mixture], cells: [u32; 2], cell_m: f64) -> Vec<Well>
 /// # Errors
 /// [`SurfaceError`] with what is possible.
 pub(crate) fn check_size(cells: [u32; 2], cell_m: f64) -> Result<(), SurfaceError> {
-    if cells.iter().any(|cells| !(1..=65_536).contains(cells)) {
+    if cells.iter().any(|cells| !(1..=CELLS_MAX).contains(cells)) {
         return Err(SurfaceError::Cells(cells));
     }
     if CellSide::stored_range().contains(&cell_m) {

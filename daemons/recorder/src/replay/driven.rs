@@ -95,7 +95,7 @@ fn read<M: Message>(what: &str, message: &RecordedMessage) -> Result<M, Recorder
     let read = decode::<M>(&message.bytes).map(|(_, message)| message);
     read.map_err(|error| RecorderError::Unreadable {
         what: what.to_owned(),
-        error: error.to_string(),
+        error: error.into(),
         file: None,
     })
 }

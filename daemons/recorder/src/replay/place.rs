@@ -72,7 +72,7 @@ impl Place {
         let (_, sample) =
             decode::<StylusSample>(bytes).map_err(|error| RecorderError::Unreadable {
                 what: "a sample cannot be read".to_owned(),
-                error: error.to_string(),
+                error: error.into(),
                 file: None,
             })?;
         Ok(self.placement.sample(&sample, self.head_m))

@@ -6,13 +6,14 @@ use clap::Args;
 use maulstick_rig::config::{CanvasSection, is_path};
 use maulstick_rig::{UserError, whole_path};
 use maulstick_types::command::{NewCanvas, RigCommand};
+use maulstick_types::region::sides;
 use maulstick_types::values::MaterialName;
 
 use maulstick_painting_setup::cells::check_speed;
 
 use crate::commands::client::{Client, Target};
 use crate::commands::open::LONGEST;
-use crate::commands::option_error::{OptionError, sides};
+use crate::commands::option_error::OptionError;
 use crate::commands::say;
 
 /// Options of `maulstick painting new`.
@@ -52,7 +53,7 @@ pub struct NewOptions {
 
 /// Reads `WxH`.
 fn parse_cm(text: &str) -> Result<[f64; 2], OptionError> {
-    sides(text, "a size in cm such as 40x30")
+    sides(text).ok_or_else(|| OptionError::unexpected(text, "a size in cm such as 40x30"))
 }
 
 /// Creates a painting and opens it.

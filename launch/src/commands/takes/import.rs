@@ -8,8 +8,9 @@ use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 
 use maulstick_painting_setup::outputs::{UsedFile, check_outputs};
+use maulstick_types::region::sides;
 
-use crate::commands::option_error::{OptionError, sides};
+use crate::commands::option_error::OptionError;
 use crate::commands::write_take;
 
 /// Options of `maulstick take import`.
@@ -62,10 +63,7 @@ pub(super) fn run(options: &ImportOptions) -> Result<i32, UserError> {
 /// Reads `WxH`, each above 0.
 fn parse_area(text: &str) -> Result<[f64; 2], OptionError> {
     let expected = "a size such as 44704x27940";
-    let area = sides(text, expected)?;
-    if area.iter().all(|side| *side > 0.0 && side.is_finite()) {
-        Ok(area)
-    } else {
-        Err(OptionError::unexpected(text, expected))
-    }
+    sides(text)
+        .filter(|area: &[f64; 2]| area.iter().all(|side| *side > 0.0 && side.is_finite()))
+        .ok_or_else(|| OptionError::unexpected(text, expected))
 }

@@ -1,5 +1,6 @@
 //! Allowed values of the settings of a rig.
 
+use maulstick_types::limits::{CELLS, CELLS_MAX};
 use maulstick_types::nearest::choice;
 use maulstick_types::wire::topics::check_name;
 
@@ -156,12 +157,12 @@ fn check_canvas(canvas: &CanvasSection) -> Result<(), Wrong> {
         ("height_mm", canvas.height_mm),
     ] {
         let cells = value / canvas.cell_mm;
-        if !(canvas.cell_mm > 0.0 && (0.5..=65_536.0).contains(&cells)) {
+        if !(canvas.cell_mm > 0.0 && CELLS.contains(&cells)) {
             return Err(Wrong {
                 what: format!("{key} = {value} with cells of {} mm", canvas.cell_mm),
                 key,
                 value: String::new(),
-                help: "choose a size of 1 to 65536 cells".into(),
+                help: format!("choose a size of 1 to {CELLS_MAX} cells"),
             });
         }
     }

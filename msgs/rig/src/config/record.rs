@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use maulstick_types::values::seconds_in;
 use serde::{Deserialize, Serialize};
 
 /// Shortest and longest time of which the newest files are kept, s.
@@ -36,7 +37,7 @@ impl RecordSection {
         let Some(text) = &self.last else {
             return Ok(None);
         };
-        let last = parse_duration(text).filter(|last| LAST_S.contains(last));
+        let last = seconds_in(text.trim()).filter(|last| LAST_S.contains(last));
         match last {
             Some(seconds) => Ok(Some(Duration::from_secs_f64(seconds))),
             None => Err(LastError(text.clone())),
@@ -65,19 +66,6 @@ impl RecordSection {
             )
         })
     }
-}
-
-/// Reads a time with its unit (s, m or h), s.
-fn parse_duration(text: &str) -> Option<f64> {
-    let text = text.trim();
-    let factor = match text.chars().last()? {
-        's' => 1.0,
-        'm' => 60.0,
-        'h' => 3600.0,
-        _ => return None,
-    };
-    let number: f64 = text[..text.len() - 1].trim().parse().ok()?;
-    Some(number * factor)
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ pub use texts::{
     BrushName, BrushToml, DeviceName, DeviceToml, LayerName, MaterialName, ModelName, SpectrumText,
     VersionName, WholePath,
 };
-pub use ticks::{TICKS_A_SECOND, Ticks, ticks_in};
+pub use ticks::{TICKS_A_SECOND, Ticks, seconds_in, ticks_in};
 
 use crate::limits::FARTHEST_M;
 

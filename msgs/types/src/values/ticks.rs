@@ -58,18 +58,24 @@ impl Ticks {
     }
 }
 
+/// Reads a duration such as `90s`, `20min`, `2h`, in seconds, whatever their number; `None` for another text.
+#[must_use]
+pub fn seconds_in(text: &str) -> Option<f64> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = &text[digits.len()..];
+    let (_, seconds) = UNITS.iter().find(|(name, _)| *name == unit)?;
+    let count: f64 = digits.trim().parse().ok()?;
+    Some(count * seconds)
+}
+
 /// Reads a duration such as `90s`, `20min`, `2h`, in ticks: one at least, a year at most.
 ///
 /// # Errors
 /// [`ValueError::Time`].
 pub fn ticks_in(text: &str) -> Result<u32, ValueError> {
     let wrong = || ValueError::Time(text.chars().take(40).collect());
-    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    let unit = &text[digits.len()..];
-    let seconds = UNITS.iter().find(|(name, _)| *name == unit);
-    let (_, seconds) = seconds.ok_or_else(wrong)?;
-    let count: f64 = digits.trim().parse().map_err(|_| wrong())?;
-    let ticks = (count * seconds * f64::from(TICKS_A_SECOND)).round();
+    let seconds = seconds_in(text).ok_or_else(wrong)?;
+    let ticks = (seconds * f64::from(TICKS_A_SECOND)).round();
     if (1.0..=f64::from(MOST_TICKS)).contains(&ticks) {
         Ok(ticks as u32)
     } else {

@@ -2,6 +2,7 @@
 
 use maulstick_types::Region;
 use maulstick_types::command::advice::Advice;
+use maulstick_types::limits::CELLS_MAX;
 use maulstick_types::nearest::choice;
 use maulstick_types::values::{CellSide, Quantity as _};
 
@@ -73,7 +74,7 @@ impl SurfaceError {
             ),
             Self::SameModel(_) => "choose another one".to_owned(),
             Self::NoTooth { name, known } => choice(name, known.iter().copied()),
-            Self::Cells(_) => "choose 1 to 65536 cells across and up".to_owned(),
+            Self::Cells(_) => format!("choose 1 to {CELLS_MAX} cells across and up"),
             Self::CellSize(_) => format!("choose cells of {}", CellSide::range_text()),
         })
     }
