@@ -8,7 +8,7 @@ use std::os::unix::process::CommandExt as _;
 use std::path::Path;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use maulstick_rig::UserError;
 use maulstick_rig::program::own_program;
@@ -144,28 +144,24 @@ impl Drop for Processes {
         self.running
             .values()
             .for_each(|process| process.signal(Signal::SIGKILL));
-        let give_up = Instant::now() + LONGEST_END;
-        let (ended, all_ended) = mpsc::channel();
-        for (name, process) in &self.running {
-            let (name, id, ended) = (name.clone(), process.child.id(), ended.clone());
-            std::thread::spawn(move || {
-                // It is left to its parent, which may have it already.
-                let end = WaitPidFlag::WEXITED | WaitPidFlag::WNOWAIT;
-                waitid(Id::Pid(Pid::from_raw(id as i32)), end).ok();
-                ended.send(name).ok();
-            });
-        }
-        while !self.running.is_empty() {
-            let left = give_up.saturating_duration_since(Instant::now());
-            let Ok(name) = all_ended.recv_timeout(left) else {
-                break;
-            };
-            if let Some(mut process) = self.running.remove(&name) {
-                process.child.try_wait().ok();
+        let ids = self.running.values().map(|process| process.child.id());
+        let ids: Vec<_> = ids.filter_map(|id| i32::try_from(id).ok()).collect();
+        let (at_end, all_ended) = mpsc::channel();
+        // Their status stays to be read here.
+        let how = WaitPidFlag::WEXITED | WaitPidFlag::WNOWAIT;
+        let waits = move || {
+            for id in ids {
+                waitid(Id::Pid(Pid::from_raw(id)), how).ok();
             }
+            at_end.send(()).ok();
+        };
+        if std::thread::Builder::new().spawn(waits).is_ok() {
+            all_ended.recv_timeout(LONGEST_END).ok();
         }
-        for name in self.running.keys() {
-            tracing::warn!("the killed process of node '{name}' does not end");
+        for (name, process) in &mut self.running {
+            if matches!(process.child.try_wait(), Ok(None)) {
+                tracing::warn!("the killed process of node '{name}' does not end");
+            }
         }
     }
 }
