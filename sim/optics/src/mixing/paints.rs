@@ -177,41 +177,58 @@ const NAMED: usize = 4;
 /// Columns of a row.
 const COLUMNS: usize = NAMED + SAMPLES;
 
+/// A fault in a row of a paint file.
+fn fault_of(row: Row<'_>, fault: FileFault) -> PaintError {
+    let line = row.line();
+    PaintError::File { line, fault }
+}
+
 /// The header names the wavelengths of the samples.
 fn check_header(row: Row<'_>) -> Result<(), PaintError> {
     for column in NAMED..row.len() {
         let nm = crate::spectrum::wavelength(column - NAMED);
         if row.number(column)? != nm {
-            return Err(PaintError::File {
-                line: row.line(),
-                fault: FileFault::Wavelength {
-                    column: column + 1,
-                    cell: row.cell(column).to_owned(),
-                    nm,
-                },
-            });
+            let fault = FileFault::Wavelength {
+                column: column + 1,
+                cell: row.cell(column).to_owned(),
+                nm,
+            };
+            return Err(fault_of(row, fault));
         }
     }
     Ok(())
 }
 
+/// Quantity of a row.
+#[derive(Clone, Copy)]
+enum Quantity {
+    K,
+    S,
+}
+
 /// K or S of a row, per metre.
-fn spectrum(row: Row<'_>) -> Result<Spectrum, PaintError> {
+fn coefficients(row: Row<'_>) -> Result<(Quantity, Spectrum), PaintError> {
+    if row.len() != COLUMNS {
+        return Err(fault_of(row, FileFault::Columns(row.len())));
+    }
     let mut values = [0.0; SAMPLES];
     for (column, value) in (NAMED..).zip(&mut values) {
         let number = row.number(column)?;
         if !(0.0..=COEFFICIENT_MAX).contains(&number) {
-            return Err(PaintError::File {
-                line: row.line(),
-                fault: FileFault::Value {
-                    column: column + 1,
-                    cell: row.cell(column).to_owned(),
-                },
-            });
+            let fault = FileFault::Value {
+                column: column + 1,
+                cell: row.cell(column).to_owned(),
+            };
+            return Err(fault_of(row, fault));
         }
         *value = number * WHITE_S_PER_M;
     }
-    Ok(Spectrum(values))
+    let quantity = match row.cell(3) {
+        "K" => Quantity::K,
+        "S" => Quantity::S,
+        other => return Err(fault_of(row, FileFault::Quantity(other.to_owned()))),
+    };
+    Ok((quantity, Spectrum(values)))
 }
 
 /// The paints to choose from.
@@ -241,35 +258,24 @@ impl PaintLibrary {
     /// # Errors
     /// [`PaintError::File`] with the line.
     pub fn parse(text: &str) -> Result<Self, PaintError> {
+        let table = Table::parse(text, HeadingLine::Row)?;
         let mut found: BTreeMap<String, [Option<Spectrum>; 2]> = BTreeMap::new();
         let mut order: Vec<(String, String, String)> = Vec::new();
-        let table = Table::parse(text, HeadingLine::Row)?;
         for row in table.rows() {
-            let line = row.line();
-            let fault = |fault| PaintError::File { line, fault };
             if row.cell(0).eq_ignore_ascii_case("paint") {
                 check_header(row)?;
                 continue;
             }
-            if row.len() != COLUMNS {
-                return Err(fault(FileFault::Columns(row.len())));
-            }
-            let values = spectrum(row)?;
-            let [name, colour_index, source, quantity] =
-                [0, 1, 2, 3].map(|column| row.cell(column));
-            let place = match quantity {
-                "K" => 0,
-                "S" => 1,
-                other => return Err(fault(FileFault::Quantity(other.to_owned()))),
-            };
+            let (quantity, values) = coefficients(row)?;
+            let [name, colour_index, source] = [0, 1, 2].map(|column| row.cell(column));
             if !found.contains_key(name) {
-                check_paint_name(name).map_err(|error| fault(error.into()))?;
+                check_paint_name(name).map_err(|error| fault_of(row, error.into()))?;
                 order.push((name.into(), colour_index.into(), source.into()));
             }
             let rows = found.entry(name.to_owned()).or_default();
-            if rows[place].replace(values).is_some() {
-                let (quantity, paint) = (quantity.to_owned(), name.to_owned());
-                return Err(fault(FileFault::Twice { quantity, paint }));
+            if rows[quantity as usize].replace(values).is_some() {
+                let (quantity, paint) = (row.cell(3).to_owned(), name.to_owned());
+                return Err(fault_of(row, FileFault::Twice { quantity, paint }));
             }
         }
         let mut paints = Vec::new();
