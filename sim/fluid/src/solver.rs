@@ -22,13 +22,13 @@ const LEAST_OPEN: f64 = 1e-6;
 /// Grid, vessel, fluid and probe of a bench.
 #[derive(Clone, Debug)]
 pub struct Bench {
-    /// The grid.
+    /// Cells that the equations are solved on.
     pub grid: Grid,
-    /// The vessel's walls.
+    /// Walls around the fluid.
     pub vessel: Vessel,
-    /// The fluid.
+    /// Viscosity and density of what fills the vessel.
     pub fluid: Fluid,
-    /// The probe's shape.
+    /// Outline of the probe at rest.
     pub shape: Shape,
     /// Boundary of the probe on the grid.
     pub boundary: Boundary,
@@ -260,7 +260,7 @@ impl Flow {
         wrench
     }
 
-    /// The probe.
+    /// Place and motion of the probe at the end of the newest step.
     #[must_use]
     pub fn state(&self) -> &ProbeState {
         &self.state

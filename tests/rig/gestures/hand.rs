@@ -30,7 +30,7 @@ const IN_PANELS: [[i16; 2]; 2] = [[1171, 25], [383, 25]];
 /// What a gesture may do to the steps of undo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Effect {
-    /// Nothing.
+    /// No step is begun.
     Nothing,
     /// One stroke, or none where the brush neither gives nor takes.
     Stroke,

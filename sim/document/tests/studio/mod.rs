@@ -137,7 +137,7 @@ fn fill(mixture: Mixture) -> Command {
     })
 }
 
-/// The painter.
+/// A painter whose next action depends on the seed alone.
 #[derive(Clone)]
 pub struct Painter {
     pub dice: Dice,

@@ -38,7 +38,7 @@ pub struct Met {
 /// The brush over the cells below it.
 #[derive(Debug, Default)]
 pub struct Raster {
-    /// The head.
+    /// The head, drawn over the cells below it.
     pub drawn: Drawn,
     rate: Vec<f32>,
     way: Vec<f32>,

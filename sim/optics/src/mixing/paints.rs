@@ -10,18 +10,18 @@ use crate::spectrum::{SAMPLES, Spectrum};
 /// Scattering of titanium white, per metre: over black 25 µm reflect .79, 100 µm .94.
 pub const WHITE_S_PER_M: f64 = 150_000.0;
 
-/// A paint.
+/// A measured paint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Paint {
-    /// Its name.
+    /// Name by which mixtures are written.
     pub name: String,
     /// Colour index of its pigments.
     pub colour_index: String,
     /// Source of the measurement.
     pub source: String,
-    /// Absorption, per metre.
+    /// Absorption by wavelength, per metre.
     pub k: Spectrum,
-    /// Scattering, per metre.
+    /// Scattering by wavelength, per metre.
     pub s: Spectrum,
 }
 
@@ -52,7 +52,7 @@ pub enum PaintError {
     /// No such paint; the nearest name is proposed.
     #[error("there is no paint called '{name}'{}", meant(.nearest.as_deref()))]
     Unknown {
-        /// The name.
+        /// The name as it was given.
         name: String,
         /// The nearest name, if one is near.
         nearest: Option<String>,
@@ -65,7 +65,7 @@ pub enum PaintError {
     File {
         /// The line, from 1.
         line: usize,
-        /// The defect.
+        /// Defect of this line.
         fault: FileFault,
     },
 }
@@ -82,19 +82,19 @@ pub enum FileFault {
     /// A heading that is not the wavelength of its column.
     #[error("column {column}: wavelength '{cell}' instead of {nm}")]
     Wavelength {
-        /// The column.
+        /// The column, from 1.
         column: usize,
-        /// The heading.
+        /// Heading of the column.
         cell: String,
-        /// The wavelength, nm.
+        /// Wavelength that belongs to the column, nm.
         nm: f64,
     },
     /// K or S out of range.
     #[error("column {column}: {} is not 0 to {COEFFICIENT_MAX:.0}", shown(.cell))]
     Value {
-        /// The column.
+        /// The column, from 1.
         column: usize,
-        /// The cell.
+        /// Text of the cell.
         cell: String,
     },
     /// A quantity that is neither K nor S.
@@ -106,15 +106,15 @@ pub enum FileFault {
     /// A second row of K or of S.
     #[error("a second row of {quantity} of '{paint}'")]
     Twice {
-        /// K or S.
+        /// The quantity, K or S.
         quantity: String,
-        /// The paint.
+        /// Name of the paint.
         paint: String,
     },
     /// The paint without a row of K or of S.
     #[error("'{0}' lacks its row of K or of S")]
     Half(String),
-    /// No paint.
+    /// A file without a paint.
     #[error("the file holds no paint")]
     Empty,
 }
@@ -131,16 +131,16 @@ const NAME_MAX: usize = maulstick_types::limits::PAINT_NAME_MAX;
 /// A name that no paint may have.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PaintNameError {
-    /// Nothing but blanks.
+    /// A name of blanks alone.
     #[error("a paint has no name")]
     Blank,
-    /// Too many bytes.
+    /// More bytes than messages can carry.
     #[error("a paint's name has {0} bytes, more than {NAME_MAX}")]
     Long(usize),
     /// A character with which mixtures are written, or a control character.
     #[error("the name '{0}' has one of = , \" in it, with which mixtures are written")]
     Character(String),
-    /// The thinner's.
+    /// The name of the thinner.
     #[error("'{THINNER}' is the medium that every palette has; choose another name for the paint")]
     Thinner,
 }
@@ -320,7 +320,7 @@ impl PaintLibrary {
         self.hash
     }
 
-    /// The file.
+    /// Text of the file.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text

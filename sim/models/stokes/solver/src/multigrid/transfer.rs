@@ -23,7 +23,7 @@ pub(crate) enum Along {
 pub(crate) type Weights = [f32; 4];
 
 impl Along {
-    /// Adjoint of interpolation.
+    /// Weights of the restriction, the adjoint of the interpolation.
     pub(crate) const fn restriction(self) -> Weights {
         match self {
             Self::Middles => [0.25, 0.75, 0.75, 0.25],

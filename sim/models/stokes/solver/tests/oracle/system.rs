@@ -4,7 +4,7 @@
 //! rate of strain, weighted by the strained paint; every cell's inflow must equal its outflow. No constant and no code
 //! is shared with the solver.
 
-/// A seeded fault.
+/// Fault that a comparison with the basin has to find.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fault {
     /// Shear is the gradient of one velocity alone.
