@@ -66,8 +66,7 @@ fn picture(place: &Place, name: &str) -> Vec<u8> {
 
 /// Dries the stroke as a layer, with all of its paint.
 fn dry_as_sky(place: &Place, scenes: &mut Receiver<Scene>) {
-    let dry = ["layer", "dry", "--layer", "sky"];
-    assert_eq!(place.text(&dry), "dried: sky\n");
+    place.done(&["layer", "dry", "--layer", "sky"]);
     let dried = hear(scenes, |scene| !scene.layers.is_empty()).expect("a layer");
     let layer = &dried.layers[0];
     assert_eq!((layer.name.as_str(), layer.number), ("sky", 1));
@@ -114,8 +113,10 @@ fn a_painting_dries_and_is_seen_under_another_light() {
 
     place.done(&["layer", "opacity", "1", "0.2"]);
     assert!(day != picture(&place, "glaze.png"));
-    assert_eq!(place.text(&["undo"]), "undone: layer opacity\n");
-    assert_eq!(place.text(&["undo"]), "undone: dry\n");
+    place.done(&["undo"]);
+    assert_same(&day, &picture(&place, "opaque.png"), "opaque again");
+    place.done(&["undo"]);
+    assert_eq!(support::account(&place, "dry"), 0.0);
     assert!(support::on_canvas(&place) > 0.0, "wet again");
     bus.close();
 }

@@ -141,14 +141,25 @@ fn check_echo(place: &Place) {
 
 /// Lists of what is under way have the sender, the nodes and what was said before they came.
 fn check_lists(place: &Place) {
-    let latency = ["topic", "latency", "--once", "--seconds", "1.5"];
-    has(
-        &place.text(&latency),
-        &["on the way p50", "control/puck/sample", "paint/status"],
+    let once = ["--once", "--json", "--seconds"];
+    let latency = place.json(&[&["topic", "latency"], &once[..], &["1.5"]].concat());
+    let streams = latency["streams"].as_array().expect("streams");
+    for topic in ["control/puck/sample", "paint/status"] {
+        let is_timed =
+            |stream: &Value| stream["topic"] == topic && stream["transit_ns"]["p50"].is_u64();
+        assert!(streams.iter().any(is_timed), "{topic}: {latency}");
+    }
+    let nodes = place.json(&["node", "list", "--json"]);
+    let nodes = nodes.as_array().expect("nodes").iter();
+    let nodes: Vec<&str> = nodes.filter_map(|node| node["name"].as_str()).collect();
+    assert!(
+        ["brush-main", "paint"]
+            .iter()
+            .all(|name| nodes.contains(name)),
+        "{nodes:?}"
     );
-    has(&place.text(&["node", "list"]), &["brush-main", "paint"]);
-    let scene = ["topic", "list", "scene", "--once", "--seconds", "0.5"];
-    has(&place.text(&scene), &["Scene"]);
+    let scene = place.json(&[&["topic", "list", "scene"], &once[..], &["0.5"]].concat());
+    assert_eq!(scene["streams"][0]["topic"], "scene");
 }
 
 #[test]
