@@ -6,6 +6,7 @@ mod support;
 use std::path::Path;
 
 use maulstick_bus::Qos;
+use maulstick_bus::typed::Receiver;
 use maulstick_device::{Take, TakeSample};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::Scene;
@@ -42,9 +43,7 @@ fn one_stroke(path: &Path) {
 /// A rig in which a hand has painted a stroke and rests.
 fn painted(place: &Place) -> Launcher {
     one_stroke(&place.path("stroke.mcap"));
-    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
-    let config = config.replace("# hand = \"demo.mcap\"", "hand = \"stroke.mcap\"");
-    std::fs::write(place.path("rig.toml"), config).expect("written");
+    place.write_settings(&[("# hand = \"demo.mcap\"", "hand = \"stroke.mcap\"")]);
     let mut launcher = Launcher::up(place, &["--rig", "rig.toml"]);
     launcher.wait_says("is up");
     // It is done when paint lies there and no more comes.
@@ -59,8 +58,36 @@ fn painted(place: &Place) -> Launcher {
     launcher
 }
 
-fn says(place: &Place, args: &[&str]) -> String {
-    String::from_utf8(place.done(args).stdout).expect("UTF-8")
+/// The picture of the rig.
+fn picture(place: &Place, name: &str) -> Vec<u8> {
+    place.done(&["snapshot", "-o", name]);
+    place.bytes(name)
+}
+
+/// Dries the stroke as a layer, with all of its paint.
+fn dry_as_sky(place: &Place, scenes: &mut Receiver<Scene>) {
+    place.done(&["layer", "dry", "--layer", "sky"]);
+    let dried = hear(scenes, |scene| !scene.layers.is_empty()).expect("a layer");
+    let layer = &dried.layers[0];
+    assert_eq!((layer.name.as_str(), layer.number), ("sky", 1));
+    assert!(support::account(place, "dry") > 0.0);
+}
+
+/// Lights the painting with a lamp, without adaptation.
+fn light_by_a_lamp(place: &Place) {
+    let lamp = ["canvas", "light", "--illuminant", "A", "--adapt", "false"];
+    let told = place.json(&[&lamp[..], &["--json"]].concat());
+    assert_eq!(
+        (told["illuminant"].as_str(), told["adapted"].as_bool()),
+        (Some("A"), Some(false))
+    );
+    // Under another spectrum the exposure is chosen anew, as for a painting that begins under it.
+    assert!(told["exposure"].as_f64() < Some(0.8), "{told}");
+}
+
+fn expose_by_hand(place: &Place) {
+    let told = place.json(&["canvas", "light", "--exposure", "0.5", "--json"]);
+    assert_eq!(told["exposure"].as_f64(), Some(0.5));
 }
 
 #[test]
@@ -70,61 +97,26 @@ fn a_painting_dries_and_is_seen_under_another_light() {
     let (bus, topics) = support::join(&place);
     let mut scenes = listen::<Scene>(&bus, &topics.scene(), Qos::Cached);
     let mut statuses = listen::<PaintStatus>(&bus, &topics.paint_status(), Qos::Background);
-    assert_eq!(
-        says(&place, &["layer", "dry", "--layer", "sky"]),
-        "dried: sky\n"
-    );
-    let dried = hear(&mut scenes, |scene| !scene.layers.is_empty()).expect("a layer");
-    assert_eq!(
-        (dried.layers[0].name.as_str(), dried.layers[0].number),
-        ("sky", 1)
-    );
-    place.done(&["snapshot", "-o", "day.png", "--ledger", "l.json"]);
-    let ledger: serde_json::Value = serde_json::from_slice(&place.bytes("l.json")).expect("JSON");
-    assert_eq!(ledger["quanta_missing"], 0);
-    assert!(ledger["accounts_m3"]["dry"].as_f64().expect("a number") > 0.0);
+    dry_as_sky(&place, &mut scenes);
+    let day = picture(&place, "day.png");
 
-    let told = says(
-        &place,
-        &[
-            "canvas",
-            "light",
-            "--illuminant",
-            "A",
-            "--adapt",
-            "false",
-            "--json",
-        ],
-    );
-    let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
-    assert_eq!(
-        (told["illuminant"].as_str(), told["adapted"].as_bool()),
-        (Some("A"), Some(false))
-    );
+    light_by_a_lamp(&place);
     let baked = hear(&mut statuses, |status| {
         status.baking > 0 && status.baked == status.baking
     });
     assert!(baked.is_some(), "no tile is baked: {}", launcher.said());
-    place.done(&["snapshot", "-o", "lamp.png"]);
-    assert!(place.bytes("day.png") != place.bytes("lamp.png"));
-    // Under another spectrum the exposure is chosen anew, as for a painting that begins under it.
-    assert!(told["exposure"].as_f64() < Some(0.8), "{told}");
-    let by_hand = ["canvas", "light", "--exposure", "0.5", "--json"];
-    let told: serde_json::Value = serde_json::from_str(&says(&place, &by_hand)).expect("JSON");
-    assert_eq!(told["exposure"].as_f64(), Some(0.5));
+    assert!(day != picture(&place, "lamp.png"));
+    expose_by_hand(&place);
     place.done(&["canvas", "light", "--illuminant", "D65", "--adapt", "true"]);
-    place.done(&["snapshot", "-o", "again.png"]);
-    assert_same(
-        &place.bytes("day.png"),
-        &place.bytes("again.png"),
-        "back under daylight",
-    );
+    let again = picture(&place, "again.png");
+    assert_same(&day, &again, "back under daylight");
 
     place.done(&["layer", "opacity", "1", "0.2"]);
-    place.done(&["snapshot", "-o", "glaze.png"]);
-    assert!(place.bytes("day.png") != place.bytes("glaze.png"));
-    assert_eq!(says(&place, &["undo"]), "undone: layer opacity\n");
-    assert_eq!(says(&place, &["undo"]), "undone: dry\n");
+    assert!(day != picture(&place, "glaze.png"));
+    place.done(&["undo"]);
+    assert_same(&day, &picture(&place, "opaque.png"), "opaque again");
+    place.done(&["undo"]);
+    assert_eq!(support::account(&place, "dry"), 0.0);
     assert!(support::on_canvas(&place) > 0.0, "wet again");
     bus.close();
 }
@@ -141,7 +133,7 @@ fn what_a_rig_cannot_do_with_light_it_refuses_with_words() {
             assert!(said.contains(word), "{args:?}: no '{word}' in: {said}");
         }
     };
-    std::fs::write(place.path("bad.csv"), "nm,power\n380,1\n400,-3\n").expect("written");
+    place.write("bad.csv", "nm,power\n380,1\n400,-3\n");
     refused(
         &["canvas", "light", "--illuminant", "D56"],
         &["'D56'", "did you mean 'D5"],
@@ -180,8 +172,8 @@ fn what_a_rig_cannot_do_with_light_it_refuses_with_words() {
     );
     refused(&["layer", "opacity", "3", "1.5"], &["1.5", "0 to 1"]);
     refused(&["load", "Colbat Blue"], &["did you mean 'Cobalt Blue'"]);
-    std::fs::write(place.path("mine.csv"), "nm,power\n380,1\n780,2\n").expect("written");
-    let told = says(&place, &["canvas", "light", "--illuminant", "mine.csv"]);
+    place.write("mine.csv", "nm,power\n380,1\n780,2\n");
+    let told = place.text(&["canvas", "light", "--illuminant", "mine.csv"]);
     assert_eq!(told.split(' ').next(), Some("mine"), "{told}");
     drop(launcher);
 }

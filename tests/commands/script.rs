@@ -8,8 +8,7 @@ use support::{Place, assert_same, fault, has};
 const LOAD: &str = "Ultramarine Blue";
 
 fn script(place: &Place, name: &str, steps: &str) {
-    let text = format!("step = [\n{steps}\n]\n");
-    std::fs::write(place.path(name), text).expect("written");
+    place.write(name, format!("step = [\n{steps}\n]\n"));
 }
 
 #[test]
@@ -135,7 +134,7 @@ fn a_broken_brush_file_is_told_of_brushes() {
     let line = brush.lines().find(|line| line.starts_with("width_mm"));
     let wide = brush.replace(line.expect("a width"), "width_mm = \"wide\"");
     for text in ["[head\n", &wide] {
-        std::fs::write(place.path("own.toml"), text).expect("written");
+        place.write("own.toml", text);
         let said = fault(&place, &render, 2);
         has(&said, &["own.toml:", "named at", "docs/brushes.md"]);
         assert!(!said.contains("print-config"), "{said}");
@@ -228,15 +227,19 @@ fn a_tooth_may_be_a_picture_and_goes_with_the_painting() {
         &place.bytes("again.png"),
         "opened without the picture",
     );
-    let info = place.done(&["painting", "info", "day.maul"]).stdout;
-    has(&String::from_utf8_lossy(&info), &["tooth"]);
+    let tooth = support::info(&place, "day.maul")["tooth"].clone();
+    assert!(
+        tooth
+            .as_str()
+            .is_some_and(|tooth| tooth.starts_with("image:"))
+    );
 }
 
 #[test]
 fn a_script_goes_on_with_the_paints_of_the_document() {
     let place = Place::new();
     let table = maulstick_optics::paints::MEASURED.replace("Bone Black", "Tyrian Purple");
-    std::fs::write(place.path("own.csv"), table).expect("written");
+    place.write("own.csv", table);
     script(&place, "day.toml", "{ fill = \"Tyrian Purple\" },");
     let render = ["render", "--script", "day.toml", "-o", "day.png"];
     let file = ["--document", "day.maul"];
@@ -280,83 +283,71 @@ fn account(place: &Place, ledger: &str, name: &str) -> f64 {
     ledger["accounts_m3"][name].as_f64().expect("a volume")
 }
 
+/// A canvas of 80×60 mm.
+const DRYING_SIZE: [&str; 4] = ["--size", "320x240", "--cell-mm", "0.25"];
+/// A drying that takes its time.
+const SLOWLY: &str = "{ dry = 1.0, over = \"20s\", layer = \"slow\" },";
+
+/// Carries out steps, with more options; volumes of the wet and the dry paint, m³.
+fn dry(place: &Place, steps: &str, more: &[&str]) -> [f64; 2] {
+    script(place, "day.toml", steps);
+    let render = ["render", "--script", "day.toml", "-o", "day.png"];
+    place.done(&[&render[..], &["--ledger", "l.json"], more].concat());
+    ["canvas", "dry"].map(|name| account(place, "l.json", name))
+}
+
+/// Carries out steps on a new film.
+fn dry_film(place: &Place, steps: &str, more: &[&str]) -> [f64; 2] {
+    let film = "{ fill = \"Yellow Ochre=0.4,Titanium White=0.6\", um = 40 },";
+    let more = [&DRYING_SIZE[..], more].concat();
+    dry(place, &format!("{film}\n{steps}"), &more)
+}
+
 #[test]
 fn paint_dries_in_parts_and_over_time_and_becomes_wet_again() {
     let place = Place::new();
-    place.short_demo("flower.mcap", 3.0);
-    let paint = |steps: &str, more: &[&str]| {
-        let film = "{ fill = \"Yellow Ochre=0.4,Titanium White=0.6\", um = 40 },";
-        script(&place, "day.toml", &format!("{film}\n{steps}"));
-        let render = [
-            "render", "--script", "day.toml", "-o", "day.png", "--ledger", "l.json",
-        ];
-        place.done(&[&render[..], more].concat());
-        ["canvas", "dry"].map(|name| account(&place, "l.json", name))
-    };
-    let size = ["--size", "320x240", "--cell-mm", "0.25"];
-    let [all, none] = paint("", &size);
+    let film = |steps: &str| dry_film(&place, steps, &[]);
+    let slowly = |steps: &str| film(&format!("{SLOWLY}\n{steps}"));
+    let [all, none] = film("");
     assert_eq!(none, 0.0);
-    // A canvas of 80×60 mm.
-    let [wet, dry] = paint("{ dry = 0.5, region = \"0,0,40x60\" },", &size);
+    let [wet, dry] = film("{ dry = 0.5, region = \"0,0,40x60\" },");
     assert!((dry / all - 0.25).abs() < 1e-3 && (wet + dry - all).abs() < 1e-6 * all);
-    let slowly = "{ dry = 1.0, over = \"20s\", layer = \"slow\" },";
-    let [_, half] = paint(&format!("{slowly}\n{{ wait = \"10s\" }},"), &size);
+    let [_, half] = slowly("{ wait = \"10s\" },");
     assert!((half / all - 0.5).abs() < 0.05, "{}", half / all);
     let half_picture = place.bytes("day.png");
-    let [_, again] = paint(
-        &format!("{slowly}\n{{ wait = \"4s\" }},\n{{ wait = \"6s\" }},"),
-        &size,
-    );
+    let [_, again] = slowly("{ wait = \"4s\" },\n{ wait = \"6s\" },");
     assert_eq!(half, again);
     assert_same(&half_picture, &place.bytes("day.png"), "one wait and two");
-    let stopped =
-        format!("{slowly}\n{{ wait = \"10s\" }},\n{{ stop_drying = true }},\n{{ wait = \"1h\" }},");
-    assert_eq!(paint(&stopped, &size)[1], half);
-    let [wet, _] = paint(&format!("{slowly}\n{{ wait = \"20s\" }},"), &size);
-    assert_eq!(wet, 0.0);
-    let [wet, dry] = paint(
-        &format!("{slowly}\n{{ wait = \"20s\" }},\n{{ wet = \"all\" }},"),
-        &size,
-    );
-    assert_eq!((wet, dry), (all, 0.0));
-    // The time of a take counts; the brush is lifted before its end.
+    let stop = "{ wait = \"10s\" },\n{ stop_drying = true },\n{ wait = \"1h\" },";
+    assert_eq!(slowly(stop)[1], half);
+    assert_eq!(slowly("{ wait = \"20s\" },")[0], 0.0);
+    let wet_again = slowly("{ wait = \"20s\" },\n{ wet = \"all\" },");
+    assert_eq!(wet_again, [all, 0.0]);
+}
+
+#[test]
+fn paint_dries_while_a_take_is_played() {
+    let place = Place::new();
+    place.short_demo("flower.mcap", 3.0);
+    let [all, _] = dry_film(&place, "", &[]);
+    // The brush is lifted before the take's end.
     let take = "{ dry = 1.0, over = \"1s\" },\n{ load = \"Bone Black\" },\n{ take = \"flower.mcap\" },\n{ wait = \"1s\" },";
-    let [wet, dry] = paint(take, &size);
+    let [wet, dry] = dry_film(&place, take, &[]);
     assert!(wet == 0.0 && dry > 0.5 * all, "{wet} {dry}");
-    // It goes on in a document that was closed meanwhile.
+}
+
+#[test]
+fn paint_goes_on_drying_in_a_document_that_was_closed_meanwhile() {
+    let place = Place::new();
     let file = ["--document", "day.maul"];
-    paint(
-        &format!("{slowly}\n{{ wait = \"10s\" }},"),
-        &[&size[..], &file].concat(),
-    );
-    script(&place, "later.toml", "{ wait = \"10s\" },");
-    let later = [
-        "render",
-        "--script",
-        "later.toml",
-        "-o",
-        "day.png",
-        "--ledger",
-        "l.json",
-    ];
-    place.done(&[&later[..], &file].concat());
-    assert_eq!(account(&place, "l.json", "canvas"), 0.0);
-    script(
-        &place,
-        "late.toml",
-        "{ opacity = 0.5, layer = 1 },\n{ wet = 1 },",
-    );
-    let late = [
-        "render",
-        "--script",
-        "late.toml",
-        "-o",
-        "day.png",
-        "--document",
-        "day.maul",
-    ];
+    dry_film(&place, &format!("{SLOWLY}\n{{ wait = \"10s\" }},"), &file);
+    let [wet, _] = dry(&place, "{ wait = \"10s\" },", &file);
+    assert_eq!(wet, 0.0);
+    let steps = "{ opacity = 0.5, layer = 1 },\n{ wet = 1 },";
+    script(&place, "late.toml", steps);
+    let late = ["render", "--script", "late.toml", "-o", "day.png"];
     has(
-        &fault(&place, &late, 2),
+        &fault(&place, &[&late[..], &file].concat(), 2),
         &[
             "late.toml:3",
             "layer 1 (slow) has an opacity",
@@ -365,76 +356,65 @@ fn paint_dries_in_parts_and_over_time_and_becomes_wet_again() {
     );
 }
 
+/// A reflectance of a ground.
+const GROUND: &str = "nm,reflectance\n400,0.1\n500,0.2\n600,0.6\n700,0.7\n";
+
+/// The picture of a canvas without paint, with more options.
+fn bare_canvas(place: &Place, more: &[&str]) -> Vec<u8> {
+    script(place, "none.toml", "{ light = { intensity = 1.0 } },");
+    let render = ["render", "--script", "none.toml", "-o", "day.png"];
+    place.done(&[&render[..], more].concat());
+    place.bytes("day.png")
+}
+
 #[test]
 fn a_ground_may_have_any_reflectance_and_goes_with_the_painting() {
     let place = Place::new();
-    std::fs::write(
-        place.path("size.csv"),
-        "nm,reflectance\n400,0.1\n500,0.2\n600,0.6\n700,0.7\n",
-    )
-    .expect("written");
-    script(&place, "none.toml", "{ light = { intensity = 1.0 } },");
+    place.write("size.csv", GROUND);
     let size = ["--size", "128x64", "--cell-mm", "0.25"];
-    let render = |more: &[&str]| {
-        let render = ["render", "--script", "none.toml", "-o", "day.png"];
-        place.done(&[&render[..], more].concat());
-        place.bytes("day.png")
-    };
-    let plain = render(&size);
     let file = ["--document", "day.maul"];
-    let toned = render(&[&size[..], &["--ground", "size.csv"], &file].concat());
+    let plain = bare_canvas(&place, &size);
+    let toned = [&size[..], &["--ground", "size.csv"], &file].concat();
+    let toned = bare_canvas(&place, &toned);
     assert!(plain != toned, "a ground of its own");
     script(&place, "ground.toml", "{ ground = \"size.csv\" },");
     let script_ground = ["render", "--script", "ground.toml", "-o", "day.png"];
     place.done(&[&script_ground[..], &size].concat());
     assert!(place.bytes("day.png") != plain, "a ground by a step");
     std::fs::remove_file(place.path("size.csv")).expect("removed");
-    assert_same(&toned, &render(&file), "opened without the file");
-    let info = place.done(&["painting", "info", "day.maul"]).stdout;
-    has(&String::from_utf8_lossy(&info), &["spectrum "]);
+    let opened = bare_canvas(&place, &file);
+    assert_same(&toned, &opened, "opened without the file");
+    let ground = support::info(&place, "day.maul")["ground"].clone();
+    assert!(
+        ground
+            .as_str()
+            .is_some_and(|ground| ground.starts_with("spectrum:"))
+    );
+    let late = ["render", "--script", "none.toml", "-o", "x.png"];
+    let late = [&late[..], &["--ground", "grey"], &file].concat();
+    has(&fault(&place, &late, 2), &["--ground", "new painting"]);
+}
 
+#[test]
+fn a_ground_that_is_no_reflectance_is_refused_wherever_it_is_named() {
+    let place = Place::new();
+    script(&place, "none.toml", "{ light = { intensity = 1.0 } },");
+    script(&place, "bad.toml", "{ ground = \"bad.csv\" },");
+    let option = ["render", "--script", "none.toml", "-o", "x.png"];
+    let option = [&option[..], &["--ground", "bad.csv"]].concat();
     for (text, line, words) in [
         ("400,0.5\n700,1.5\n", 2, "0 to 1"),
         ("400,0.5\n390,0.5\n", 2, "rise"),
         ("400,0.5\n", 1, "two wavelengths"),
     ] {
-        std::fs::write(place.path("bad.csv"), text).expect("written");
-        let bad = [
-            "render",
-            "--script",
-            "none.toml",
-            "-o",
-            "x.png",
-            "--ground",
-            "bad.csv",
-        ];
-        has(
-            &fault(&place, &bad, 2),
-            &[&format!("bad.csv:{line}"), words],
-        );
-        script(&place, "bad.toml", "{ ground = \"bad.csv\" },");
-        let bad = ["render", "--script", "bad.toml", "-o", "x.png"];
-        has(
-            &fault(&place, &bad, 2),
-            &[&format!("bad.csv:{line}"), words],
-        );
-        has(
-            &fault(&place, &["canvas", "ground", "bad.csv"], 2),
-            &[&format!("bad.csv:{line}"), words],
-        );
+        place.write("bad.csv", text);
+        let line = format!("bad.csv:{line}");
+        for args in [
+            &option[..],
+            &["render", "--script", "bad.toml", "-o", "x.png"],
+            &["canvas", "ground", "bad.csv"],
+        ] {
+            has(&fault(&place, args, 2), &[&line, words]);
+        }
     }
-    let late = [
-        &[
-            "render",
-            "--script",
-            "none.toml",
-            "-o",
-            "x.png",
-            "--ground",
-            "grey",
-        ][..],
-        &file,
-    ]
-    .concat();
-    has(&fault(&place, &late, 2), &["--ground", "new painting"]);
 }

@@ -4,13 +4,12 @@
 #[path = "../support/mod.rs"]
 mod support;
 
-use std::collections::BTreeMap;
-
-use maulstick_bus::{Bus as _, Qos};
+use maulstick_bus::{Bus as _, Qos, ZenohBus};
 use maulstick_types::brush::BrushState;
 use maulstick_types::name_hash;
 use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::stylus::{StylusInfo, StylusSample, StylusStatus};
+use maulstick_types::wire::topics::Topics;
 use support::{Launcher, PATIENCE, Place, hear, listen, wait_for};
 
 /// A pen that draws a wave again and again, for a minute and a half.
@@ -26,13 +25,13 @@ fn waves(place: &Place, name: &str) {
             text += &format!("E: {:.6} {report}\n", seconds + 2.0 * f64::from(turn));
         }
     }
-    std::fs::write(place.path(name), text).expect("written");
+    place.write(name, text);
 }
 
 /// The built-in settings with other devices, each `(name, brush, priority, lines of its own)`, and a
 /// second brush.
 fn settings(place: &Place, devices: &[(&str, &str, i32, &str)]) {
-    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
+    let config = place.text(&["up", "--print-config"]);
     let start = config.find("[[device]]").expect("a device");
     let end = start + config[start..].find("\n\n").expect("its end");
     let mut sections = String::new();
@@ -42,11 +41,8 @@ fn settings(place: &Place, devices: &[(&str, &str, i32, &str)]) {
         );
     }
     sections += "[[brush]]\nname = \"second\"\nkind = \"flat\"\n";
-    std::fs::write(
-        place.path("rig.toml"),
-        format!("{}{sections}{}", &config[..start], &config[end..]),
-    )
-    .expect("written");
+    let (before, after) = (&config[..start], &config[end..]);
+    place.write("rig.toml", format!("{before}{sections}{after}"));
 }
 
 const PEN: &str = "driver = \"pen\"\nreplay = \"waves.hid\"\n";
@@ -96,7 +92,7 @@ fn paints_beside_a_hovering_pen(drawing: i32, hovering: i32) -> bool {
     let hovers: Vec<String> = hovers
         .filter(|line| !line.starts_with("E:") || line.contains(" 10 01 10 "))
         .collect();
-    std::fs::write(place.path("hovers.hid"), hovers.join("\n") + "\n").expect("written");
+    place.write("hovers.hid", hovers.join("\n") + "\n");
     let still = PEN.replace("waves.hid", "hovers.hid");
     settings(
         &place,
@@ -174,7 +170,7 @@ fn the_free_hand_moves_the_canvas() {
         let seconds = f64::from(report) * 0.008;
         text += &format!("E: {seconds:.6} 7 01 5e 01 00 00 00 00\n");
     }
-    std::fs::write(place.path("puck.hid"), text).expect("written");
+    place.write("puck.hid", text);
     let puck = "driver = \"spacemouse\"\nreplay = \"puck.hid\"\n";
     settings(&place, &[("puck", "main", 0, puck)]);
     let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
@@ -196,58 +192,55 @@ fn the_free_hand_moves_the_canvas() {
     bus.close();
 }
 
+/// Devices that are not there: name, priority, lines of its own, and a word of its trouble.
+const ABSENT: [(&str, i32, &str, &str); 5] = [
+    (
+        "phantom",
+        9,
+        "driver = \"openhaptics\"\nlibrary = \"/nowhere/libHD.so\"\n",
+        "libhd",
+    ),
+    (
+        "wooden",
+        8,
+        "driver = \"polhem\"\naddress = \"/dev/nothing\"\n",
+        "/dev/nothing",
+    ),
+    (
+        "haply",
+        7,
+        "driver = \"inverse3\"\naddress = \"ws://127.0.0.1:9\"\n",
+        "127.0.0.1:9",
+    ),
+    ("tablet", 6, "driver = \"pen\"\n", "pen"),
+    ("puck", 5, "driver = \"spacemouse\"\n", "mouse"),
+];
+
+/// The trouble that a device of the rig tells.
+fn trouble_of(bus: &ZenohBus, topics: &Topics, name: &str) -> Option<String> {
+    let topic = topics.stylus_status(name);
+    let mut statuses = listen::<StylusStatus>(bus, &topic, Qos::Background);
+    let told = hear(&mut statuses, |status| status.trouble().is_some())?;
+    told.trouble().map(|trouble| trouble.to_string())
+}
+
 #[test]
 fn devices_that_are_not_there_are_told_once_and_the_rig_goes_on_with_the_others() {
     let place = Place::new();
     waves(&place, "waves.hid");
-    let missing = |driver: &str| format!("driver = \"{driver}\"\n");
+    let absent = ABSENT.map(|(name, priority, own, _)| (name, "main", priority, own));
     settings(
         &place,
-        &[
-            (
-                "phantom",
-                "main",
-                9,
-                "driver = \"openhaptics\"\nlibrary = \"/nowhere/libHD.so\"\n",
-            ),
-            (
-                "wooden",
-                "main",
-                8,
-                "driver = \"polhem\"\naddress = \"/dev/nothing\"\n",
-            ),
-            (
-                "haply",
-                "main",
-                7,
-                "driver = \"inverse3\"\naddress = \"ws://127.0.0.1:9\"\n",
-            ),
-            ("tablet", "main", 6, &missing("pen")),
-            ("puck", "main", 5, &missing("spacemouse")),
-            ("played", "main", 0, PEN),
-        ],
+        &[&absent[..], &[("played", "main", 0, PEN)]].concat(),
     );
     let mut launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
     let (bus, topics) = support::join(&place);
-    let mut troubles = BTreeMap::new();
-    for (name, word) in [
-        ("phantom", "libHD"),
-        ("wooden", "/dev/nothing"),
-        ("haply", "127.0.0.1:9"),
-        ("tablet", "pen"),
-        ("puck", "mouse"),
-    ] {
-        let topic = topics.stylus_status(name);
-        let mut statuses = listen::<StylusStatus>(&bus, &topic, Qos::Background);
-        let told = hear(&mut statuses, |status| status.trouble().is_some());
-        let told = told.unwrap_or_else(|| panic!("{name}: {}", launcher.said()));
-        let trouble = told.trouble().expect("trouble").to_string();
-        assert!(
-            trouble.to_lowercase().contains(&word.to_lowercase()),
-            "{name}: {trouble}"
-        );
-        troubles.insert(name, trouble);
-    }
+    let troubles = ABSENT.map(|(name, _, _, word)| {
+        let trouble = trouble_of(&bus, &topics, name);
+        let trouble = trouble.unwrap_or_else(|| panic!("{name}: {}", launcher.said()));
+        assert!(trouble.to_lowercase().contains(word), "{name}: {trouble}");
+        (name, trouble)
+    });
     let mut states = listen::<BrushState>(&bus, &topics.brush_state("main"), Qos::RealTime);
     let played = |state: &BrushState| touches(state) && state.device == name_hash("played");
     assert!(hear(&mut states, played).is_some(), "{}", launcher.said());

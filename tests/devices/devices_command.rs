@@ -7,18 +7,16 @@ mod support;
 use serde_json::Value;
 use support::{Launcher, PATIENCE, Place, has, wait_for};
 
-/// What it prints as JSON.
+/// The list of devices.
 fn devices(place: &Place) -> Value {
-    let said = place.done(&["device", "list", "--json"]).stdout;
-    serde_json::from_slice(&said).expect("JSON")
+    place.json(&["device", "list", "--json"])
 }
 
 #[test]
 fn the_devices_of_a_rig_are_listed_while_it_runs() {
     let place = Place::new();
     assert_eq!(devices(&place)["rig"], Value::Null);
-    let config = place.done(&["up", "--print-config"]).stdout;
-    std::fs::write(place.path("rig.toml"), config).expect("written");
+    place.write_settings(&[]);
     let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
     let rows = wait_for(PATIENCE, || {
         let rig = devices(&place)["rig"].clone();
@@ -38,7 +36,7 @@ fn the_devices_of_a_rig_are_listed_while_it_runs() {
         (&10.into(), &"".into())
     );
     let text = wait_for(PATIENCE, || {
-        let text = String::from_utf8(place.done(&["device", "list"]).stdout).expect("UTF-8");
+        let text = place.text(&["device", "list"]);
         text.contains("simulated").then_some(text)
     });
     let text = text.unwrap_or_else(|| panic!("no phantom: {}", launcher.said()));
@@ -51,8 +49,7 @@ fn the_devices_of_a_rig_are_listed_while_it_runs() {
         ],
     );
     // Another rig has none of it.
-    let text = String::from_utf8(place.done(&["device", "list", "--name", "other"]).stdout)
-        .expect("UTF-8");
+    let text = place.text(&["device", "list", "--name", "other"]);
     has(&text, &["does not run"]);
     assert!(!text.contains("phantom"), "{text}");
 }
@@ -60,7 +57,7 @@ fn the_devices_of_a_rig_are_listed_while_it_runs() {
 #[test]
 fn the_rule_for_udev_is_printed_by_itself() {
     let place = Place::new();
-    let rule = String::from_utf8(place.done(&["device", "list", "--udev"]).stdout).expect("UTF-8");
+    let rule = place.text(&["device", "list", "--udev"]);
     has(
         &rule,
         &["\"*:056A:*\"", "\"*:256F:*\"", "16c0", "TAG+=\"uaccess\""],
@@ -90,97 +87,81 @@ fn refused(place: &Place, args: &[&str]) -> String {
     String::from_utf8(output.stderr).expect("UTF-8")
 }
 
+/// Adds a device that nobody plugged in.
+fn add_absent_arm(place: &Place) {
+    let add = ["device", "add", "arm", "--driver", "polhem"];
+    let add = [&add[..], &["--address", "/dev/none"]].concat();
+    place.done(&add);
+    row(place, "arm", |row| {
+        let trouble = row["trouble"].as_str();
+        let is_told = trouble.is_some_and(|told| told.contains("/dev/none"));
+        is_told && row["driver"] == "polhem"
+    });
+}
+
+/// Gives the puck another law of force, and the brush before all others.
+fn use_puck(place: &Place) {
+    place.done(&["device", "use", "puck", "--force", "rigid"]);
+    row(place, "puck", |row| {
+        row["brush"] == "main" && row["priority"] == 1 && row["force"] == "rigid"
+    });
+}
+
+/// Calls the puck by another name: it is as it was, and its force is as off as it was.
+fn call_it_cup(place: &Place) {
+    let off = ["device", "force", "off", "--device", "puck"];
+    has(&place.text(&off), &["force off"]);
+    place.done(&["device", "rename", "puck", "cup"]);
+    row(place, "cup", |row| {
+        row["priority"] == 1 && row["force"] == "rigid" && row["is_there"] == true
+    });
+    let listed = devices(place)["rig"].to_string();
+    assert!(!listed.contains("puck"), "{listed}");
+    let strength = ["device", "force", "strength", "100%", "--device", "cup"];
+    has(&place.text(&strength), &["cup: force off"]);
+}
+
+/// Names that others have are refused, and nothing changes.
+fn refuse_taken_names(place: &Place) {
+    for (name, words) in [
+        ("arm", "a device called 'arm' already"),
+        ("paint", "something called 'paint'"),
+    ] {
+        has(
+            &refused(place, &["device", "rename", "cup", name]),
+            &[words],
+        );
+    }
+    row(place, "cup", |row| row["is_own"] == true);
+}
+
 #[test]
 fn devices_come_change_and_go_while_the_rig_runs() {
     let place = Place::new();
-    let said = |args: &[&str]| String::from_utf8(place.done(args).stdout).expect("UTF-8");
-    let kept = said(&["device", "add", "puck", "--driver", "simulated"]);
-    has(
-        &kept,
-        &[
-            "'puck' (simulated) is kept in",
-            "devices.toml",
-            "maulstick up",
-        ],
-    );
+    // While no rig runs it is kept for the next one.
+    place.done(&["device", "add", "puck", "--driver", "simulated"]);
     let launcher = Launcher::up(&place, &[]);
     row(&place, "puck", |row| {
         row["driver"] == "simulated" && row["priority"] == 0
     });
-    // Another one beside it, which nobody plugged in.
-    let args = [
-        "device",
-        "add",
-        "arm",
-        "--driver",
-        "polhem",
-        "--address",
-        "/dev/none",
-    ];
-    has(&said(&args), &["'arm' (polhem)", "device 'arm' starts"]);
-    row(&place, "arm", |row| {
-        row["trouble"]
-            .as_str()
-            .is_some_and(|told| told.contains("/dev/none"))
-    });
-    // With another law of force, and before all others.
-    let used = said(&["device", "use", "puck", "--force", "rigid"]);
-    has(
-        &used,
-        &["'puck' moves 'main' with priority 1; its force is rigid"],
-    );
+    add_absent_arm(&place);
+    use_puck(&place);
+    call_it_cup(&place);
+    refuse_taken_names(&place);
+    place.done(&["device", "rename", "cup", "puck"]);
     row(&place, "puck", |row| row["priority"] == 1);
-    // By another name, as it is, and with its force as off as it was.
-    has(
-        &said(&["device", "force", "off", "--device", "puck"]),
-        &["force off"],
-    );
-    has(
-        &said(&["device", "rename", "puck", "cup"]),
-        &["'puck' is called 'cup' now"],
-    );
-    row(&place, "cup", |row| {
-        row["priority"] == 1 && row["force"] == "rigid" && row["is_there"] == true
-    });
+
+    place.done(&["device", "remove", "arm"]);
     let listed = devices(&place)["rig"].to_string();
-    assert!(!listed.contains("puck"), "{listed}");
-    has(
-        &said(&["device", "force", "strength", "100%", "--device", "cup"]),
-        &["cup: force off"],
-    );
-    // Nothing of what is refused changes anything.
-    has(
-        &refused(&place, &["device", "rename", "cup", "arm"]),
-        &["a device called 'arm' already"],
-    );
-    has(
-        &refused(&place, &["device", "rename", "cup", "paint"]),
-        &["something called 'paint'"],
-    );
-    row(&place, "cup", |row| row["is_own"] == true);
-    has(&said(&["device", "rename", "cup", "puck"]), &["'puck' now"]);
-    row(&place, "puck", |row| row["priority"] == 1);
-    has(
-        &said(&["device", "remove", "arm"]),
-        &["kept no more", "has left the rig"],
-    );
-    has(&said(&["device", "remove", "puck"]), &["has left the rig"]);
+    assert!(!listed.contains("\"arm\""), "{listed}");
+    place.done(&["device", "remove", "puck"]);
     let gone = wait_for(PATIENCE, || {
         place.pid("maulstick-haptic").is_none().then_some(())
     });
     assert!(gone.is_some(), "{}", launcher.said());
-    has(
-        &said(&[
-            "device",
-            "add",
-            "puck",
-            "--driver",
-            "simulated",
-            "--priority",
-            "-3",
-        ]),
-        &["device 'puck' starts"],
-    );
+    let add = ["device", "add", "puck", "--driver", "simulated"];
+    let last = [&add[..], &["--priority", "-3"]].concat();
+    place.done(&last);
     row(&place, "puck", |row| row["priority"] == -3);
 }
 

@@ -58,16 +58,8 @@ fn fades(samples: &mut Receiver<StylusSample>, head_length_m: f64) -> Option<()>
 /// A rig whose simulated hand presses for minutes, with other lines in its settings.
 fn pressing_rig(place: &Place, others: &[(&str, &str)]) -> Launcher {
     support::press_for_minutes(&place.path("press.mcap"));
-    let output = place.done(&["up", "--print-config"]);
-    let mut config = String::from_utf8(output.stdout).expect("UTF-8");
-    for (line, other) in [("# hand = \"demo.mcap\"", "hand = \"press.mcap\"")]
-        .iter()
-        .chain(others)
-    {
-        assert!(config.contains(line), "{line}");
-        config = config.replace(line, other);
-    }
-    std::fs::write(place.path("rig.toml"), config).expect("written");
+    let hand = ("# hand = \"demo.mcap\"", "hand = \"press.mcap\"");
+    place.write_settings(&[&[hand], others].concat());
     Launcher::up(place, &["--rig", "rig.toml"])
 }
 
@@ -257,6 +249,39 @@ fn paint(device: Origin, along_n: f64, damping_n_s_m: f64) -> FluidForce {
     }
 }
 
+/// Sends a force until it is felt; at no tick does the force on the hand leap.
+fn push_until_felt(samples: &mut Receiver<StylusSample>, mut send: impl FnMut()) -> Option<()> {
+    let mut last = None;
+    wait_for(PATIENCE, || {
+        send();
+        while let Some(received) = samples.try_recv() {
+            let (event_ns, force_n) = (received.header.event_ns, received.message.force_n);
+            if let Some((before_ns, before)) = last.replace((event_ns, force_n)) {
+                let s = (event_ns - before_ns) as f64 * 1e-9;
+                let stood = s > Limits::default().longest_tick_s;
+                assert!(
+                    stood || !leaps(&before, &force_n, s),
+                    "{before:?} {force_n:?}"
+                );
+            }
+            if force_n[0] > 0.5 {
+                return Some(());
+            }
+        }
+        None
+    })
+}
+
+/// Sends a force until more than twenty of them are counted as foreign.
+fn push_until_refused(statuses: &mut Receiver<StylusStatus>, mut send: impl FnMut()) -> Option<()> {
+    let before = hear(statuses, |_| true)?.foreign_models;
+    wait_for(PATIENCE, || {
+        send();
+        let newest = statuses.newest()?.message;
+        (newest.foreign_models > before + 20).then_some(())
+    })
+}
+
 #[test]
 fn a_force_of_paint_is_felt_without_a_leap_and_one_that_pushes_is_dropped() {
     let place = Place::new();
@@ -278,44 +303,16 @@ fn a_force_of_paint_is_felt_without_a_leap_and_one_that_pushes_is_dropped() {
     };
     let topic = topics.fluid_force("phantom");
     let mut sender = Sender::new(&bus, &topic, Qos::RealTime, me).expect("a sender");
-    let mut send = |force: &FluidForce| {
+    let mut send = |damping_n_s_m: f64| {
         let now_ns = bus.now_ns();
-        sender.send(now_ns, now_ns, force).expect("sent");
+        // Across the stroke, where no friction is: friction along x is less than this.
+        let force = paint(device, 0.9, damping_n_s_m);
+        sender.send(now_ns, now_ns, &force).expect("sent");
     };
-    // Across the stroke, where no friction is: friction along x is less than this.
-    let mut last = None;
-    let pushed = wait_for(PATIENCE, || {
-        send(&paint(device, 0.9, 0.1));
-        while let Some(received) = samples.try_recv() {
-            let (event_ns, force_n) = (received.header.event_ns, received.message.force_n);
-            if let Some((before_ns, before)) = last.replace((event_ns, force_n)) {
-                let s = (event_ns - before_ns) as f64 * 1e-9;
-                let stood = s > Limits::default().longest_tick_s;
-                assert!(
-                    stood || !leaps(&before, &force_n, s),
-                    "{before:?} {force_n:?}"
-                );
-            }
-            if force_n[0] > 0.5 {
-                return Some(());
-            }
-        }
-        None
-    });
-    assert!(
-        pushed.is_some(),
-        "the paint is not felt: {}",
-        launcher.said()
-    );
-    let foreign = hear(&mut statuses, |_| true)
-        .expect("a status")
-        .foreign_models;
-    let counted = wait_for(PATIENCE, || {
-        send(&paint(device, 0.9, -0.1));
-        let newest = statuses.newest()?.message;
-        (newest.foreign_models > foreign + 20).then_some(())
-    });
-    assert!(counted.is_some(), "one that pushes is taken");
+    let felt = push_until_felt(&mut samples, || send(0.1));
+    assert!(felt.is_some(), "the paint is not felt: {}", launcher.said());
+    let refused = push_until_refused(&mut statuses, || send(-0.1));
+    assert!(refused.is_some(), "one that pushes is taken");
     drain(&mut samples);
     let gone = hear(&mut samples, |sample| {
         size(sample) > 0.1 && sample.force_n[0] < 0.3

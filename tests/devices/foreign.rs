@@ -6,16 +6,17 @@ mod support;
 use std::io::{BufRead as _, BufReader};
 use std::net::UdpSocket;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStderr, Command, Stdio};
 use std::time::Duration;
 
 use glam::{DQuat, DVec3};
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, Qos, Queue, Wake};
+use maulstick_bus::{Bus, Qos, Queue, Wake, ZenohBus};
 use maulstick_num::geometry::{canonical, rotation};
 use maulstick_types::command::{CommandRequest, TakeCommand};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, HEADER_BYTES, Origin, Pose, encode};
 use support::{Launcher, PATIENCE, Place, hear, join, listen, on_canvas, wait_for};
 
@@ -142,13 +143,45 @@ fn datagram(numbers: [f64; 6]) -> Vec<u8> {
     numbers.into_iter().flat_map(f64::to_le_bytes).collect()
 }
 
-/// The tracker's program, ended with this value.
-struct Tracker(Child);
+/// The tracker's program and the socket that it listens on; dropped, it ends.
+struct Tracker {
+    program: Child,
+    /// What it says; it could not say more once this were closed.
+    _said: BufReader<ChildStderr>,
+    socket: UdpSocket,
+}
+
+impl Tracker {
+    fn start(place: &Place, device: &str) -> Self {
+        let mut program = python(place, "tracker.py", &["--port", "0", "--device", device]);
+        let mut said = BufReader::new(program.stderr.take().expect("piped"));
+        let mut line = String::new();
+        said.read_line(&mut line).expect("text");
+        let address = line.trim_end().strip_prefix("listening on ");
+        let socket = UdpSocket::bind("127.0.0.1:0").expect("a socket");
+        socket.connect(address.expect(&line)).expect("there");
+        Self {
+            program,
+            _said: said,
+            socket,
+        }
+    }
+
+    /// Sends a pose among datagrams that are none.
+    fn send(&self, pose: [f64; 6]) {
+        let good = datagram(pose);
+        let far = datagram([1e9, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let none = datagram([f64::NAN, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        for bytes in [&good[..47], &far, &none, &good, &[]] {
+            self.socket.send(bytes).expect("sent");
+        }
+    }
+}
 
 impl Drop for Tracker {
     fn drop(&mut self) {
-        self.0.kill().ok();
-        self.0.wait().ok();
+        self.program.kill().ok();
+        self.program.wait().ok();
     }
 }
 
@@ -160,68 +193,58 @@ fn held(sample: &StylusSample) -> Option<&Pose> {
     }
 }
 
+/// Sends a pose until its sample comes, and returns the ferrule. It is known by its place along x; the first samples may
+/// be missed.
+fn tracked(tracker: &Tracker, heard: &mut Receiver<StylusSample>, pose: [f64; 6]) -> Option<Pose> {
+    wait_for(PATIENCE, || {
+        tracker.send(pose);
+        while let Some(received) = heard.try_recv() {
+            let sample = received.message;
+            assert_eq!(sample.fault(), None, "{sample:?}");
+            let ferrule = held(&sample).expect("a ferrule");
+            let is_it = (ferrule.position_m[0] - 0.01 * pose[0]).abs() < 1e-9;
+            if sample.in_range && is_it {
+                return Some(ferrule.clone());
+            }
+        }
+        None
+    })
+}
+
+/// Orientation of angles, degrees.
+fn turned(yaw: f64, pitch: f64, roll: f64) -> DQuat {
+    let about = |axis: DVec3, degrees: f64| rotation(axis, degrees.to_radians());
+    canonical(about(DVec3::Y, yaw) * about(DVec3::X, pitch) * about(DVec3::Z, roll))
+}
+
+/// Yaw, pitch and roll, degrees: a turn by each angle alone tells which is which.
+const ANGLES: [[f64; 3]; 6] = [
+    [0.0, 0.0, 0.0],
+    [40.0, 0.0, 0.0],
+    [0.0, -25.0, 0.0],
+    [0.0, 0.0, 130.0],
+    [40.0, -25.0, 130.0],
+    [200.0, 300.0, -190.0],
+];
+
 #[test]
 fn a_tracker_holds_the_ferrule_until_it_falls_silent() {
     let place = Place::new();
     let launcher = Launcher::up(&place, &[]);
     let (bus, topics) = join(&place);
     let mut heard = listen::<StylusSample>(&bus, &topics.sample("wand"), Qos::RealTime);
-    let mut tracker = python(&place, "tracker.py", &["--port", "0", "--device", "wand"]);
-    let mut said = BufReader::new(tracker.stderr.take().expect("piped")).lines();
-    let _tracker = Tracker(tracker);
-    let line = said
-        .next()
-        .expect("it says where it listens")
-        .expect("text");
-    let address = line.strip_prefix("listening on ").expect(&line);
-    let socket = UdpSocket::bind("127.0.0.1:0").expect("a socket");
-    socket.connect(address).expect("there");
-    // What is no pose is passed over, and a turn by each angle alone tells which is which.
-    let [yaw, pitch, roll] = [40.0, -25.0, 130.0];
-    let turns = |yaw: f64, pitch: f64, roll: f64| -> DQuat {
-        let about = |axis: DVec3, degrees: f64| rotation(axis, degrees.to_radians());
-        canonical(about(DVec3::Y, yaw) * about(DVec3::X, pitch) * about(DVec3::Z, roll))
-    };
+    let tracker = Tracker::start(&place, "wand");
     let mut off = [0.0f64; 2];
-    for (number, [yaw, pitch, roll]) in [
-        [0.0, 0.0, 0.0],
-        [yaw, 0.0, 0.0],
-        [0.0, pitch, 0.0],
-        [0.0, 0.0, roll],
-        [yaw, pitch, roll],
-        [200.0, 300.0, -190.0],
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        // Each sample has a place of its own, by which it is known; the first ones may be missed.
-        let x_cm = 1.0 + number as f64;
-        let good = datagram([x_cm, -2.0, 30.0, yaw, pitch, roll]);
-        let far = datagram([1e9, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        let none = datagram([f64::NAN, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        let is_it = |sample: &StylusSample| {
-            assert_eq!(sample.fault(), None, "{sample:?}");
-            let pose = held(sample).expect("a ferrule");
-            sample.in_range && (pose.position_m[0] - 0.01 * x_cm).abs() < 1e-9
-        };
-        let sample = wait_for(PATIENCE, || {
-            for bytes in [&good[..47], &far, &none, &good, &[]] {
-                socket.send(bytes).expect("sent");
-            }
-            std::iter::from_fn(|| heard.try_recv())
-                .map(|received| received.message)
-                .find(&is_it)
-        });
-        let sample = sample.unwrap_or_else(|| panic!("{number}: {}", launcher.said()));
-        let pose = held(&sample).expect("a ferrule");
-        assert!((pose.position_m[1] + 0.02).abs() < 1e-9);
-        assert!((pose.position_m[2] - 0.3).abs() < 1e-9);
-        let told = DQuat::from_array(pose.orientation);
+    for (number, [yaw, pitch, roll]) in ANGLES.into_iter().enumerate() {
+        let pose = [1.0 + number as f64, -2.0, 30.0, yaw, pitch, roll];
+        let ferrule = tracked(&tracker, &mut heard, pose);
+        let ferrule = ferrule.unwrap_or_else(|| panic!("{number}: {}", launcher.said()));
+        assert!((ferrule.position_m[1] + 0.02).abs() < 1e-9);
+        assert!((ferrule.position_m[2] - 0.3).abs() < 1e-9);
+        let told = DQuat::from_array(ferrule.orientation);
         // Turned in the other order as a seeded fault.
-        for (off, expected) in off
-            .iter_mut()
-            .zip([turns(yaw, pitch, roll), turns(pitch, yaw, roll)])
-        {
+        let orders = [turned(yaw, pitch, roll), turned(pitch, yaw, roll)];
+        for (off, expected) in off.iter_mut().zip(orders) {
             *off = off.max(told.angle_between(expected));
         }
     }
@@ -232,16 +255,8 @@ fn a_tracker_holds_the_ferrule_until_it_falls_silent() {
     bus.close();
 }
 
-#[test]
-fn hostile_messages_are_counted_and_dropped() {
-    let place = Place::new();
-    let launcher = Launcher::up(&place, &[]);
-    let before = place.processes();
-    let (bus, topics) = join(&place);
-    let wake = Wake::new();
-    let (topic, class) = (topics.paint_status(), Qos::Background);
-    let mut status = Receiver::<PaintStatus>::new(&bus, &topic, class, Queue::Latest, &wake)
-        .expect("subscribed");
+/// Bytes that are no message: an unknown schema, a wrong length, a hostile length inside the body, a cut, a surplus.
+fn hostile() -> Vec<Vec<u8>> {
     let origin = Origin {
         source: 9,
         epoch: 9,
@@ -254,7 +269,6 @@ fn hostile_messages_are_counted_and_dropped() {
     };
     let good = encode(&origin, Flags::NONE, 0, 1, 1, &mark).expect("encoded");
     let mut hostile = vec![Vec::new(), vec![0; 7], vec![0xff; 5000]];
-    // An unknown schema, a wrong length, a hostile length inside the body, a cut, a surplus.
     for (at, byte) in [(4, 0x55), (20, 0x01), (48 + 16 + 1, 0xff)] {
         let mut bytes = good.clone();
         bytes[at] ^= byte;
@@ -262,7 +276,12 @@ fn hostile_messages_are_counted_and_dropped() {
     }
     hostile.push(good[..good.len() - 1].to_vec());
     hostile.push([&good[..], &[0]].concat());
-    let targets = [
+    hostile
+}
+
+/// Sends messages to all that listen, and asks all that answer with them.
+fn attack(bus: &ZenohBus, topics: &Topics, messages: &[Vec<u8>], wake: &Wake) {
+    for topic in [
         topics.sample("evil"),
         topics.brush_state("main"),
         topics.contact_model("phantom"),
@@ -270,27 +289,38 @@ fn hostile_messages_are_counted_and_dropped() {
         topics.paint_consumed(),
         topics.brush_consumed("main"),
         topics.brush_def("x"),
-    ];
+    ] {
+        let publisher = bus.publisher(&topic, Qos::Data).expect("declared");
+        for bytes in messages {
+            publisher.put(bytes.clone()).expect("sent");
+        }
+    }
+    for topic in [
+        topics.command("paint"),
+        topics.frame(),
+        topics.gap("brush/main/state"),
+    ] {
+        for bytes in messages {
+            let limit = Duration::from_millis(50);
+            let asked = bus.ask(&topic, Qos::Control, bytes.clone(), limit, wake);
+            drop(asked.expect("asked"));
+        }
+    }
+}
+
+#[test]
+fn hostile_messages_are_counted_and_dropped() {
+    let place = Place::new();
+    let launcher = Launcher::up(&place, &[]);
+    let before = place.processes();
+    let (bus, topics) = join(&place);
+    let wake = Wake::new();
+    let (topic, class) = (topics.paint_status(), Qos::Background);
+    let mut status = Receiver::<PaintStatus>::new(&bus, &topic, class, Queue::Latest, &wake)
+        .expect("subscribed");
+    let hostile = hostile();
     let told = wait_for(PATIENCE, || {
-        for target in &targets {
-            let publisher = bus.publisher(target, Qos::Data).expect("declared");
-            hostile
-                .iter()
-                .for_each(|bytes| publisher.put(bytes.clone()).expect("sent"));
-        }
-        for topic in [
-            topics.command("paint"),
-            topics.frame(),
-            topics.gap("brush/main/state"),
-        ] {
-            for bytes in &hostile {
-                let limit = Duration::from_millis(50);
-                drop(
-                    bus.ask(&topic, Qos::Control, bytes.clone(), limit, &wake)
-                        .expect("asked"),
-                );
-            }
-        }
+        attack(&bus, &topics, &hostile, &wake);
         status.newest().filter(|status| status.message.refused > 10)
     });
     assert!(told.is_some(), "nothing was counted: {}", launcher.said());

@@ -3,16 +3,13 @@
 #[path = "../support/mod.rs"]
 mod support;
 
-use std::io::{BufRead as _, BufReader, Write as _};
-use std::process::Stdio;
-
 use glam::{DQuat, DVec3};
 use maulstick_brush::BrushFile;
 use maulstick_bus::Qos;
 use maulstick_bus::typed::Receiver;
 use maulstick_device::{Take, TakeSample};
 use maulstick_types::stylus::{StylusPose, StylusSample, StylusStatus, axes};
-use serde_json::Value;
+use support::replay::Replay;
 use support::{Launcher, PATIENCE, Place, drain, fault, has, hear, listen, wait_for};
 
 /// Strokes of 10 cm along x in 2 s each, `aside` m to both sides of a straight path, with lifts of half a second.
@@ -79,6 +76,15 @@ fn aside(samples: &mut Receiver<StylusSample>, head_length_m: f64) -> f64 {
     sum / f64::from(count)
 }
 
+/// Guides the hand along the recorded path, without strength at first; a device that is not there is refused.
+fn guide(place: &Place) -> Replay {
+    let guide = ["recording", "replay", "path.mcap", "--guide"];
+    let nobody = [&guide[..], &["nobody"]].concat();
+    has(&fault(place, &nobody, 2), &["nobody", "device list"]);
+    let options = ["phantom", "--strength", "0", "--loop", "--json"];
+    Replay::start(place.maulstick(&[&guide[..], &options].concat()))
+}
+
 #[test]
 fn a_guided_hand_paints_nearer_to_the_recorded_path_until_force_is_off() {
     let place = Place::new();
@@ -86,60 +92,26 @@ fn a_guided_hand_paints_nearer_to_the_recorded_path_until_force_is_off() {
     strokes(&place.path("hand.mcap"), 70, 4e-3);
     let brush = BrushFile::library("round").expect("a brush");
     let head_length_m = brush.scaled_to(10.0).expect("a size").length_m();
-    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
-    let hand = config.replace("# hand = \"demo.mcap\"", "hand = \"hand.mcap\"");
-    assert_ne!(hand, config);
-    std::fs::write(place.path("rig.toml"), hand).expect("written");
+    place.write_settings(&[("# hand = \"demo.mcap\"", "hand = \"hand.mcap\"")]);
     let mut launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
     launcher.wait_says("is up");
     let (bus, topics) = support::join(&place);
     let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
-    let mut statuses =
-        listen::<StylusStatus>(&bus, &topics.stylus_status("phantom"), Qos::Background);
-    let refused = fault(
-        &place,
-        &["recording", "replay", "path.mcap", "--guide", "nobody"],
-        2,
-    );
-    has(&refused, &["nobody", "device list"]);
+    let status = topics.stylus_status("phantom");
+    let mut statuses = listen::<StylusStatus>(&bus, &status, Qos::Background);
+    let mut guide = guide(&place);
 
-    let guide = [
-        "recording",
-        "replay",
-        "path.mcap",
-        "--guide",
-        "phantom",
-        "--strength",
-        "0",
-        "--loop",
-        "--json",
-    ];
-    let mut command = place.maulstick(&guide);
-    command.stdin(Stdio::piped()).stdout(Stdio::piped());
-    let mut child = command.spawn().expect("started");
-    let mut input = child.stdin.take().expect("piped");
-    let said = BufReader::new(child.stdout.take().expect("piped"));
-    let mut lines = said.lines().map_while(Result::ok);
-    let mut until = |is_so: &dyn Fn(&Value) -> bool| {
-        let line = lines.by_ref().find(|line| {
-            let line = serde_json::from_str(line).expect("JSON");
-            is_so(&line)
-        });
-        assert!(line.is_some(), "it ended");
-    };
-    let mut order = |order: &str| writeln!(input, "{order}").expect("written");
-
-    until(&|line| line["strength"] == 0.0 && line["strokes"] == 2);
+    guide.until(|line| line["strength"] == 0.0 && line["strokes"] == 2);
     let free_m = aside(&mut samples, head_length_m);
     drain(&mut statuses);
     assert!(hear(&mut statuses, |_| true).is_some_and(|status| !status.is_guided));
-    order("strength 0.8");
-    until(&|line| line["strength"] == 0.8);
+    guide.order("strength 0.8");
+    guide.until(|line| line["strength"] == 0.8);
     assert!(hear(&mut statuses, |status| status.is_guided).is_some());
     let guided_m = aside(&mut samples, head_length_m);
     println!("{:.2} mm, guided {:.2} mm", free_m * 1e3, guided_m * 1e3);
     assert!(guided_m < 0.85 * free_m, "{guided_m} m, free {free_m} m");
-    until(&|line| line["traced"] == 1);
+    guide.until(|line| line["traced"] == 1);
 
     place.done(&["device", "force", "guidance", "20%", "--device", "phantom"]);
     let is_weak = |status: &StylusStatus| status.is_guided && status.guidance == 0.2;
@@ -149,8 +121,8 @@ fn a_guided_hand_paints_nearer_to_the_recorded_path_until_force_is_off() {
     drain(&mut samples);
     let is_free = |sample: &StylusSample| sample.force_n == [0.0; 3];
     assert!((0..200).all(|_| hear(&mut samples, |_| true).is_some_and(|own| is_free(&own))));
-    order("end");
-    assert!(child.wait().expect("ended").success());
+    guide.order("end");
+    guide.finish();
     assert!(hear(&mut statuses, |status| !status.is_guided).is_some());
     bus.close();
 }

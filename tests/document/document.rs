@@ -156,7 +156,7 @@ fn a_drying_goes_on_after_a_crash_and_layers_become_wet_again() {
     );
     place.done(&["undo"]);
     assert_eq!(account(&place, "dry"), all);
-    std::fs::write(place.path("size.csv"), "400,0.2\n700,0.6\n").expect("written");
+    place.write("size.csv", "400,0.2\n700,0.6\n");
     place.done(&["canvas", "ground", "size.csv"]);
     bus.close();
     launcher.close(&place);
@@ -265,84 +265,77 @@ fn a_take_into_a_painting_begins_again_after_a_crash() {
     );
 }
 
+/// A file that is no painting.
+const LIST: &str = "a shopping list, and much more than sixteen bytes of it";
+
+/// A painting as a program of a later format would write it.
+fn of_later_format(painting: &[u8]) -> Vec<u8> {
+    let mut newer = painting.to_vec();
+    newer[63] = 99;
+    newer
+}
+
 #[test]
 fn what_is_no_painting_is_refused_and_stays_as_it_is() {
     let place = Place::new();
     place.short_demo("take.mcap", 2.0);
-    let write =
-        |name: &str, bytes: &[u8]| std::fs::write(place.path(name), bytes).expect("written");
-    write(
-        "text.maul",
-        b"a shopping list, and much more than sixteen bytes of it",
-    );
-    for args in [
-        &["up", "--headless", "text.maul"][..],
-        &["painting", "info", "text.maul"],
-        &["painting", "pack", "text.maul"],
-        &[
-            "render",
-            "take.mcap",
-            "-o",
-            "p.png",
-            "--document",
-            "text.maul",
-        ],
+    place.write("text.maul", LIST);
+    for command in [
+        "up --headless text.maul",
+        "painting info text.maul",
+        "painting pack text.maul",
+        "render take.mcap -o p.png --document text.maul",
     ] {
+        let args: Vec<&str> = command.split(' ').collect();
         has(
-            &fault(&place, args, 2),
+            &fault(&place, &args, 2),
             &["not a Maulstick painting", "text.maul", "help:"],
         );
     }
-    assert!(place.bytes("text.maul").starts_with(b"a shopping"));
+    assert_same(&place.bytes("text.maul"), LIST.as_bytes(), "the list");
     assert!(!place.path("p.png").exists());
-    has(
-        &fault(&place, &["painting", "info", "none.maul"], 2),
-        &["no such file", "none.maul"],
-    );
-    has(
-        &fault(&place, &["up", "--headless", "no/folder/x.maul"], 2),
-        &["folder", "x.maul"],
-    );
-    has(
-        &fault(&place, &["up", "--headless", "."], 2),
-        &["not a Maulstick painting"],
-    );
-    place.done(&[
-        "render",
-        "take.mcap",
-        "-o",
-        "p.png",
-        "--document",
-        "x.maul",
-        "--load",
-        "Bone Black",
-    ]);
+    for (args, words) in [
+        (
+            &["painting", "info", "none.maul"][..],
+            &["no such file", "none.maul"][..],
+        ),
+        (
+            &["up", "--headless", "no/folder/x.maul"],
+            &["folder", "x.maul"],
+        ),
+        (&["up", "--headless", "."], &["not a Maulstick painting"]),
+        (
+            &["up", "--headless", "y.maul", "--memory", "lots"],
+            &["lots", "512M"],
+        ),
+    ] {
+        has(&fault(&place, args, 2), words);
+    }
+}
+
+#[test]
+fn a_painting_of_a_later_format_or_in_parts_is_refused_and_stays_as_it_is() {
+    let place = Place::new();
+    place.short_demo("take.mcap", 2.0);
+    let render = ["render", "take.mcap", "-o", "p.png", "--load", "Bone Black"];
+    place.done(&[&render[..], &["--document", "x.maul"]].concat());
     let there = place.bytes("x.maul");
     let again = ["up", "--headless", "x.maul", "--size", "64x64"];
     has(&fault(&place, &again, 2), &["--size", "x.maul"]);
-    has(
-        &fault(
-            &place,
-            &["up", "--headless", "y.maul", "--memory", "lots"],
-            2,
-        ),
-        &["lots", "512M"],
-    );
-    // A newer program's painting, and a damaged one.
-    let mut newer = there.clone();
-    newer[63] = 99;
-    write("newer.maul", &newer);
+    let newer = of_later_format(&there);
+    place.write("newer.maul", &newer);
     has(
         &fault(&place, &["up", "--headless", "newer.maul"], 2),
         &["format 99", "newer"],
     );
-    write("torn.maul", &there[..there.len() / 2]);
+    let torn = &there[..there.len() / 2];
+    place.write("torn.maul", torn);
     has(
         &fault(&place, &["painting", "info", "torn.maul"], 2),
         &["damaged", "recover"],
     );
     assert_same(&place.bytes("newer.maul"), &newer, "a newer painting");
-    assert_eq!(place.bytes("torn.maul").len(), there.len() / 2);
+    assert_eq!(place.bytes("torn.maul").len(), torn.len());
 }
 
 #[test]

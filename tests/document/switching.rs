@@ -31,108 +31,116 @@ fn status(place: &Place, wanted: impl FnMut(&PaintStatus) -> bool) -> PaintStatu
     status
 }
 
-#[test]
-fn a_rig_goes_from_painting_to_painting_and_nothing_is_lost() {
-    let place = Place::new();
-    let launcher = Launcher::up(&place, &["a.maul", "--size", "256x256"]);
-    let pids = || ["maulstick-paint", "maulstick-brush"].map(|name| place.pid(name));
-    let begun = pids();
-    place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);
-    let yellow = account(&place, "canvas");
-    // What is filled just now is not committed yet.
-    place.done(&["canvas", "fill", "Bone Black", "--um", "20"]);
-    place.done(&[
-        "painting", "new", "b.maul", "--cm", "4x3", "--tooth", "cotton",
-    ]);
-    assert_eq!(cells(&place), [160, 120]);
-    let there = pids();
+/// Processes of paint and brush.
+fn nodes(place: &Place) -> [Option<u32>; 2] {
+    ["maulstick-paint", "maulstick-brush"].map(|name| place.pid(name))
+}
+
+/// Begins another painting in the running rig, with the same brush, and paints on it.
+fn paint_another(place: &Place) {
+    let begun = nodes(place);
+    let new = ["painting", "new", "b.maul", "--cm", "4x3"];
+    place.done(&[&new[..], &["--tooth", "cotton"]].concat());
+    assert_eq!(cells(place), [160, 120]);
+    let there = nodes(place);
     assert!(there[0] != begun[0], "another paint node");
     assert_eq!(there[1], begun[1], "the same brush");
-    assert_eq!(account(&place, "canvas"), 0.0);
-    assert!(wait_for(PATIENCE, || (account(&place, "brush") > 0.0).then_some(())).is_some());
+    assert_eq!(account(place, "canvas"), 0.0);
+    let carries = || (account(place, "brush") > 0.0).then_some(());
+    assert!(wait_for(PATIENCE, carries).is_some());
     place.done(&["canvas", "fill", "Pyrrole Red", "--um", "40"]);
-    let told = status(&place, |told| told.all_committed);
+    let told = status(place, |told| told.all_committed);
     assert!(told.path.ends_with("/b.maul") && !told.blank, "{told:?}");
     assert!(
         !told.backend.is_empty() && told.committed_ns > 0,
         "{told:?}"
     );
+}
+
+/// Opens the first painting again, of which `yellow` was painted before the newest step.
+fn open_the_first_again(place: &Place, yellow: f64) {
     place.done(&["painting", "open", "a.maul"]);
-    assert_eq!(cells(&place), [256, 256]);
-    assert!(account(&place, "canvas") > yellow, "the black is there too");
-    let opened = pids();
+    assert_eq!(cells(place), [256, 256]);
+    assert!(account(place, "canvas") > yellow, "the black is there too");
+    let opened = nodes(place);
     place.done(&["painting", "open", "./a.maul"]);
-    assert_eq!(pids(), opened, "it is open already");
+    assert_eq!(nodes(place), opened, "it is open already");
     place.done(&["undo"]);
-    assert_eq!(account(&place, "canvas"), yellow, "its history is there");
-    // What cannot be opened or begun is refused, and the painting stays.
-    let write =
-        |name: &str, bytes: &[u8]| std::fs::write(place.path(name), bytes).expect("written");
+    assert_eq!(account(place, "canvas"), yellow, "its history is there");
+}
+
+/// What cannot be opened, begun or saved to, and what is said of it.
+const REFUSED: [(&[&str], &[&str]); 15] = [
+    (&["open", "none.maul"], &["no such file", "none.maul"]),
+    (
+        &["open", "list.maul"],
+        &["not a Maulstick painting", "list.maul"],
+    ),
+    (&["open", "newer.maul"], &["format 99", "newer"]),
+    (&["open", "torn.maul"], &["damaged", "recover"]),
+    (&["open", "."], &["not a Maulstick painting"]),
+    (&["new", "b.maul"], &["already", "b.maul"]),
+    (&["new", "list.maul"], &["already", "another name"]),
+    (&["new", "no/c.maul"], &["no/c.maul"]),
+    (&["new", "c.maul", "--cm", "0x10"], &["0×10 cm", "choose"]),
+    (
+        &["new", "c.maul", "--cm", "1000000x10"],
+        &["choose", "1638 cm"],
+    ),
+    (&["new", "c.maul", "--tooth", "silk"], &["silk"]),
+    (&["new", "c.maul", "--ground", "none.csv"], &["none.csv"]),
+    (&["save-as", "b.maul"], &["already", "--replace"]),
+    (
+        &["save-as", "list.maul", "--replace"],
+        &["not a Maulstick painting"],
+    ),
+    (&["save-as", "no/c.maul"], &["folder"]),
+];
+
+/// All that is refused leaves the painting and the files as they are.
+fn refuse_other_files(place: &Place) {
+    let before = (nodes(place), account(place, "canvas"));
     let closed = place.bytes("b.maul");
     let mut newer = closed.clone();
     newer[63] = 99;
-    write("newer.maul", &newer);
-    write("torn.maul", &closed[..closed.len() / 2]);
-    write(
-        "list.maul",
-        b"a shopping list, and much more than sixteen bytes of it",
-    );
-    let paint = pids()[0];
-    for (args, words) in [
-        (
-            &["painting", "open", "none.maul"][..],
-            &["no such file", "none.maul"][..],
-        ),
-        (
-            &["painting", "open", "list.maul"],
-            &["not a Maulstick painting", "list.maul"],
-        ),
-        (&["painting", "open", "newer.maul"], &["format 99", "newer"]),
-        (&["painting", "open", "torn.maul"], &["damaged", "recover"]),
-        (&["painting", "open", "."], &["not a Maulstick painting"]),
-        (&["painting", "new", "b.maul"], &["already", "b.maul"]),
-        (
-            &["painting", "new", "list.maul"],
-            &["already", "another name"],
-        ),
-        (&["painting", "new", "no/c.maul"], &["no/c.maul"]),
-        (
-            &["painting", "new", "c.maul", "--cm", "0x10"],
-            &["0×10 cm", "choose"],
-        ),
-        (
-            &["painting", "new", "c.maul", "--cm", "1000000x10"],
-            &["choose", "1638 cm"],
-        ),
-        (&["painting", "new", "c.maul", "--tooth", "silk"], &["silk"]),
-        (
-            &["painting", "new", "c.maul", "--ground", "none.csv"],
-            &["none.csv"],
-        ),
-        (
-            &["painting", "save-as", "b.maul"],
-            &["already", "--replace"],
-        ),
-        (
-            &["painting", "save-as", "list.maul", "--replace"],
-            &["not a Maulstick painting"],
-        ),
-        (&["painting", "save-as", "no/c.maul"], &["folder"]),
-    ] {
-        has(&fault(&place, args, 2), words);
+    place.write("newer.maul", &newer);
+    place.write("torn.maul", &closed[..closed.len() / 2]);
+    let list = "a shopping list, and much more than sixteen bytes of it";
+    place.write("list.maul", list);
+    for (args, words) in REFUSED {
+        has(&fault(place, &[&["painting"], args].concat(), 2), words);
     }
     assert!(!place.path("c.maul").exists());
-    assert_eq!(pids()[0], paint, "nothing was started again");
-    assert_eq!(account(&place, "canvas"), yellow);
+    let after = (nodes(place), account(place, "canvas"));
+    assert_eq!(after, before, "nothing was started again");
     assert_same(&place.bytes("newer.maul"), &newer, "a newer painting");
     assert_same(&place.bytes("b.maul"), &closed, "the other painting");
-    let other = Launcher::up(&place, &["--name", "other", "b.maul"]);
+}
+
+/// A painting that another rig has open is refused.
+fn refuse_what_is_open_elsewhere(place: &Place) {
+    let before = nodes(place);
+    let other = Launcher::up(place, &["--name", "other", "b.maul"]);
     has(
-        &fault(&place, &["painting", "open", "b.maul"], 2),
+        &fault(place, &["painting", "open", "b.maul"], 2),
         &["open in another program", "b.maul"],
     );
     drop(other);
-    assert_eq!(pids()[0], paint, "{}", launcher.said());
+    assert_eq!(nodes(place), before, "nothing was started again");
+}
+
+#[test]
+fn a_rig_goes_from_painting_to_painting_and_nothing_is_lost() {
+    let place = Place::new();
+    let launcher = Launcher::up(&place, &["a.maul", "--size", "256x256"]);
+    place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);
+    let yellow = account(&place, "canvas");
+    // What is filled just now is not committed yet.
+    place.done(&["canvas", "fill", "Bone Black", "--um", "20"]);
+    paint_another(&place);
+    open_the_first_again(&place, yellow);
+    refuse_other_files(&place);
+    refuse_what_is_open_elsewhere(&place);
     launcher.close(&place);
     for file in ["a.maul", "b.maul"] {
         assert_eq!(info(&place, file)["ledger"]["quanta_missing"], 0);

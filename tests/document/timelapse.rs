@@ -27,9 +27,50 @@ fn apart(one: &[u8], other: &[u8]) -> u8 {
     apart.max().expect("some")
 }
 
-fn said(place: &Place, args: &[&str]) -> [String; 2] {
-    let output = place.done(args);
-    [output.stdout, output.stderr].map(|said| String::from_utf8_lossy(&said).into_owned())
+/// What a command that succeeds complains of.
+fn complaint(place: &Place, args: &[&str]) -> String {
+    String::from_utf8_lossy(&place.done(args).stderr).into_owned()
+}
+
+/// The command for a time lapse of ten frames.
+fn film<'a>(output: &[&'a str]) -> Vec<&'a str> {
+    let film = ["painting", "timelapse", "x.maul"];
+    let length = ["--seconds", "1", "--fps", "10", "-o"];
+    [&film[..], &length, output].concat()
+}
+
+/// Its frames are as large as the painting, from the bare canvas to the finished picture, which holds.
+fn check_frames(frames: &[([u32; 2], Vec<u8>)], finished: &([u32; 2], Vec<u8>)) {
+    assert_eq!(frames.len(), 10);
+    assert!(frames.iter().all(|(size, _)| *size == finished.0));
+    assert!(apart(&frames[9].1, &finished.1) <= 1, "a pixel a cell");
+    assert!(frames[9] == frames[8], "it holds");
+    let painted = |frame: &[u8]| {
+        let pairs = frame.iter().zip(&frames[0].1);
+        pairs
+            .filter(|(one, other)| one.abs_diff(**other) > 8)
+            .count()
+    };
+    let painted: Vec<usize> = frames.iter().map(|(_, frame)| painted(frame)).collect();
+    assert!(painted[2] > 0 && painted[2] < painted[4], "{painted:?}");
+    assert!(frames[4] != frames[6] && frames[6] != frames[9]);
+}
+
+/// A GIF 100 pixels wide of the second's length, without frames that are as the one before.
+fn check_gif(bytes: &[u8], [width, height]: [u32; 2]) {
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let mut gif = options.read_info(bytes).expect("a GIF");
+    assert_eq!(
+        (gif.width(), u32::from(gif.height())),
+        (100, 100 * height / width)
+    );
+    let (mut shown, mut time) = (0, 0);
+    while let Some(frame) = gif.read_next_frame().expect("whole") {
+        (shown, time) = (shown + 1, time + frame.delay);
+    }
+    assert!((4..=10).contains(&shown), "{shown} frames that differ");
+    assert_eq!(time, 100, "hundredths of a second");
 }
 
 #[test]
@@ -43,79 +84,30 @@ fn a_time_lapse_begins_with_the_canvas_and_ends_with_the_painting() {
     place.done(&[&render[..], &twice[..]].concat());
     let before = place.bytes("x.maul");
 
-    let film = [
-        "painting",
-        "timelapse",
-        "x.maul",
-        "--seconds",
-        "1",
-        "--fps",
-        "10",
-    ];
-    let [out, error] = said(&place, &[&film[..], &["-o", "frames/"]].concat());
-    has(&out, &["10 frames", "in 1.0 s"]);
+    let error = complaint(&place, &film(&["frames/"]));
     assert_eq!(error, "", "it gives the painting again");
-    let (size, finished) = pixels(&place.path("second.png"));
     let mut names: Vec<_> = std::fs::read_dir(place.path("frames"))
         .expect("a folder")
         .map(|file| file.expect("read").path())
         .collect();
     names.sort();
-    assert_eq!(names.len(), 10);
     let frames: Vec<_> = names.iter().map(|name| pixels(name)).collect();
-    assert!(frames.iter().all(|(other, _)| *other == size));
-    assert!(apart(&frames[9].1, &finished) <= 1, "a pixel a cell");
-    assert!(frames[9] == frames[8], "it holds");
-    let painted = |frame: &[u8]| {
-        let blank = &frames[0].1;
-        let changed = frame
-            .iter()
-            .zip(blank)
-            .filter(|(one, other)| one.abs_diff(**other) > 8);
-        changed.count()
-    };
-    let painted: Vec<usize> = frames.iter().map(|(_, frame)| painted(frame)).collect();
-    assert!(painted[2] > 0 && painted[2] < painted[4], "{painted:?}");
-    assert!(frames[4] != frames[6] && frames[6] != frames[9]);
-    has(
-        &fault(&place, &[&film[..], &["-o", "frames"]].concat(), 1),
-        &["frames", "new folder"],
-    );
-
-    said(
-        &place,
-        &[&film[..], &["-o", "film.gif", "--width", "100"]].concat(),
-    );
-    let bytes = place.bytes("film.gif");
-    let mut options = gif::DecodeOptions::new();
-    options.set_color_output(gif::ColorOutput::RGBA);
-    let mut gif = options.read_info(&bytes[..]).expect("a GIF");
-    assert_eq!(
-        (gif.width(), u32::from(gif.height())),
-        (100, 100 * size[1] / size[0])
-    );
-    let (mut shown, mut time) = (0, 0);
-    while let Some(frame) = gif.read_next_frame().expect("whole") {
-        (shown, time) = (shown + 1, time + frame.delay);
-    }
-    assert!((4..=10).contains(&shown), "{shown} frames that differ");
-    assert_eq!(time, 100, "hundredths of a second");
+    let finished = pixels(&place.path("second.png"));
+    check_frames(&frames, &finished);
+    place.done(&film(&["film.gif", "--width", "100"]));
+    check_gif(&place.bytes("film.gif"), finished.0);
     assert_eq!(place.bytes("x.maul"), before, "the painting is only read");
 
     // Another kind of file does not give way.
-    std::fs::write(place.path("film.mp4"), "a shopping list").expect("written");
-    has(
-        &fault(&place, &[&film[..], &["-o", "film.mp4"]].concat(), 1),
-        &["film.mp4", "--overwrite"],
-    );
-    has(
-        &fault(&place, &[&film[..], &["-o", "film.avi"]].concat(), 2),
-        &[".mp4 or .gif"],
-    );
-    has(
-        &fault(&place, &[&film[..], &["-o", "x.maul"]].concat(), 2),
-        &["maul"],
-    );
+    place.write("film.mp4", "a shopping list");
+    for (output, code, words) in [
+        ("frames", 1, &["frames", "new folder"][..]),
+        ("film.mp4", 1, &["film.mp4", "--overwrite"]),
+        ("film.avi", 2, &[".mp4 or .gif"]),
+        ("x.maul", 2, &["maul"]),
+    ] {
+        has(&fault(&place, &film(&[output]), code), words);
+    }
 }
 
 #[test]
@@ -133,19 +125,15 @@ fn an_mp4_without_ffmpeg_is_refused_with_advice() {
     assert!(!place.path("film.mp4").exists());
 }
 
-#[test]
-fn a_log_says_who_did_what_and_a_record_can_be_left_out_and_forgotten() {
-    let place = Place::new();
-    place.short_demo("take.mcap", 2.0);
-    let render = ["render", "take.mcap", "--load", "Bone Black", "-o", "p.png"];
-    let file = ["--document", "x.maul"];
-    place.done(&[&render[..], &file[..], &COARSE[..]].concat());
-    let strokes = |name: &str| info(&place, name)["record"]["strokes"].clone();
-    let painted = strokes("x.maul").as_u64().expect("a record");
-    assert!(painted > 0);
-    let [log, _] = said(&place, &["painting", "log", "x.maul"]);
+/// Number of strokes in the record of a painting; none without a record.
+fn strokes(place: &Place) -> Option<u64> {
+    info(place, "x.maul")["record"]["strokes"].as_u64()
+}
+
+/// The log has who did what, and a line for each stroke.
+fn check_log(place: &Place, painted: u64) {
     has(
-        &log,
+        &place.text(&["painting", "log", "x.maul"]),
         &[
             "time",
             "who",
@@ -155,37 +143,39 @@ fn a_log_says_who_did_what_and_a_record_can_be_left_out_and_forgotten() {
             "begin a take of player with main, loaded with Bone Black",
         ],
     );
-    let [json, _] = said(&place, &["painting", "log", "x.maul", "--json"]);
-    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
-    let lines = json["log"].as_array().expect("lines");
-    let kind = |line: &&serde_json::Value| line["kind"] == "stroke";
-    assert_eq!(lines.iter().filter(kind).count() as u64, painted);
-    let [words, _] = said(&place, &["painting", "info", "x.maul"]);
+    let log = place.json(&["painting", "log", "x.maul", "--json"]);
+    let lines = log["log"].as_array().expect("lines");
+    let is_stroke = |line: &&serde_json::Value| line["kind"] == "stroke";
+    assert_eq!(lines.iter().filter(is_stroke).count() as u64, painted);
     has(
-        &words,
+        &place.text(&["painting", "info", "x.maul"]),
         &["record", &format!("{painted} strokes"), " UTC to "],
     );
+}
+
+#[test]
+fn a_log_says_who_did_what_and_a_record_can_be_left_out_and_forgotten() {
+    let place = Place::new();
+    place.short_demo("take.mcap", 2.0);
+    let render = ["render", "take.mcap", "--load", "Bone Black", "-o", "p.png"];
+    let file = ["--document", "x.maul"];
+    place.done(&[&render[..], &file[..], &COARSE[..]].concat());
+    let painted = strokes(&place).expect("a record");
+    assert!(painted > 0);
+    check_log(&place, painted);
 
     // A picture is laid by no message.
     place.done(&["painting", "import", "x.maul", "p.png"]);
-    assert_eq!(strokes("x.maul"), 0);
-    let film = [
-        "painting",
-        "timelapse",
-        "x.maul",
-        "--seconds",
-        "0.5",
-        "-o",
-        "film.gif",
-    ];
-    let [_, error] = said(&place, &film);
-    assert_eq!(error, "");
+    assert_eq!(strokes(&place), Some(0));
+    let film = ["painting", "timelapse", "x.maul", "--seconds", "0.5"];
+    let film = [&film[..], &["-o", "film.gif"]].concat();
+    assert_eq!(complaint(&place, &film), "");
     place.done(&[&render[..], &file[..]].concat());
-    assert_eq!(strokes("x.maul"), painted);
+    assert_eq!(strokes(&place), Some(painted));
     place.done(&["painting", "pack", "x.maul"]);
-    assert_eq!(strokes("x.maul"), painted, "it stays");
+    assert_eq!(strokes(&place), Some(painted), "it stays");
     place.done(&["painting", "pack", "x.maul", "--forget-record"]);
-    assert_eq!(strokes("x.maul"), 0);
+    assert_eq!(strokes(&place), Some(0));
 
     place.done(&[&render[..], &file[..], &["--record", "0"]].concat());
     assert_eq!(info(&place, "x.maul")["record"], serde_json::Value::Null);

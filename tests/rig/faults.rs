@@ -129,7 +129,9 @@ impl Attack<'_> {
         }
     }
 
-    fn strike(&mut self, fault: Fault, launcher: &Launcher) {
+    /// Strikes; the time from which the rig can paint again.
+    fn strike(&mut self, fault: Fault, launcher: &Launcher) -> Instant {
+        let struck = Instant::now();
         match fault {
             Fault::BrushDies => signal(self.pid("maulstick-brush"), Signal::SIGKILL),
             Fault::PaintDies => signal(self.pid("maulstick-paint"), Signal::SIGKILL),
@@ -144,18 +146,26 @@ impl Attack<'_> {
                 signal(self.pid("maulstick-paint"), Signal::SIGKILL);
             }
             Fault::MachineStandsStill => {
-                let all: Vec<u32> = self.place.processes().iter().map(|(pid, _)| *pid).collect();
-                signal(launcher.pid(), Signal::SIGSTOP);
-                for pid in &all {
-                    signal(*pid, Signal::SIGSTOP);
-                }
-                wait_for(Duration::from_secs(8), || None::<()>);
-                for pid in &all {
-                    signal(*pid, Signal::SIGCONT);
-                }
-                signal(launcher.pid(), Signal::SIGCONT);
+                self.stand_still(launcher);
+                // It painted nothing until now, which is nobody's fault.
+                return Instant::now();
             }
         }
+        struck
+    }
+
+    /// Stops all processes of the rig for eight seconds.
+    fn stand_still(&self, launcher: &Launcher) {
+        let all: Vec<u32> = self.place.processes().iter().map(|(pid, _)| *pid).collect();
+        signal(launcher.pid(), Signal::SIGSTOP);
+        for pid in &all {
+            signal(*pid, Signal::SIGSTOP);
+        }
+        wait_for(Duration::from_secs(8), || None::<()>);
+        for pid in &all {
+            signal(*pid, Signal::SIGCONT);
+        }
+        signal(launcher.pid(), Signal::SIGCONT);
     }
 }
 
@@ -174,6 +184,55 @@ fn order(dice: &mut Pcg64Mcg) -> Vec<Fault> {
         order.swap(last, dice.next_u32() as usize % (last + 1));
     }
     order
+}
+
+/// Waits until states have been accepted steadily; how long that took to begin.
+fn paints_steadily(struck: Instant, mut accepted: impl FnMut() -> Option<()>) -> Option<Duration> {
+    let (mut since, mut newest) = (struck, struck);
+    wait_for(PATIENCE, || {
+        if accepted().is_some() {
+            if newest.elapsed() > BREAK {
+                since = Instant::now();
+            }
+            newest = Instant::now();
+        }
+        let steady = newest.elapsed() < BREAK && since.elapsed() > STEADY;
+        steady.then_some(since.duration_since(struck))
+    })
+}
+
+/// Faults that ended a node, by their times.
+#[derive(Default)]
+struct Failures(Vec<Instant>);
+
+impl Failures {
+    /// Waits until another one leaves two at most within [`APART`].
+    fn wait_for_room(&self) {
+        let before_last = self.0.iter().nth_back(1);
+        let passed = before_last.map_or(APART, Instant::elapsed);
+        wait_for(APART.saturating_sub(passed), || None::<()>);
+    }
+}
+
+/// Prints the times until the rig painted again.
+fn print_times(mut times: Vec<Duration>) {
+    times.sort();
+    println!(
+        "{} faults: painting again after {:.2} s in the median, {:.2} s at most",
+        times.len(),
+        times[times.len() / 2].as_secs_f64(),
+        times[times.len() - 1].as_secs_f64()
+    );
+}
+
+/// Memory of brush and paint after all floods is about that after the first.
+fn check_memory(held: &[[u64; 2]]) {
+    println!("memory after floods {held:?}");
+    if let (Some(first), Some(last)) = (held.first(), held.last()) {
+        let mut pairs = last.iter().zip(first);
+        let grows = pairs.any(|(last, first)| *last > first + MORE_BYTES);
+        assert!(!grows, "{held:?}");
+    }
 }
 
 #[test]
@@ -201,71 +260,34 @@ fn sixty_faults_lose_nothing_and_the_rig_paints_again() {
     wait_for(PATIENCE, &mut accepted).expect("the hand paints");
 
     let mut committed = 0;
-    let (mut times, mut ended) = (Vec::new(), Vec::new());
-    let mut held: Vec<(u64, u64)> = Vec::new();
+    let (mut times, mut failures) = (Vec::new(), Failures::default());
+    let mut held = Vec::new();
     for (number, fault) in order(&mut attack.dice).into_iter().enumerate() {
+        let what = format!("fault {number}, {fault:?}");
         if fault.ends_a_node() {
-            let before_last: Option<&Instant> = ended.iter().nth_back(1);
-            let passed = before_last.map_or(APART, Instant::elapsed);
-            wait_for(APART.saturating_sub(passed), || None::<()>);
+            failures.wait_for_room();
         }
-        let struck = Instant::now();
-        attack.strike(fault, &launcher);
-        // A machine that stood still painted nothing then, which is nobody's fault.
-        let struck = if fault == Fault::MachineStandsStill {
-            Instant::now()
-        } else {
-            struck
-        };
-        let (mut since, mut newest) = (struck, struck);
-        let again = wait_for(PATIENCE, || {
-            if accepted().is_some() {
-                if newest.elapsed() > BREAK {
-                    since = Instant::now();
-                }
-                newest = Instant::now();
-            }
-            let steady = newest.elapsed() < BREAK && since.elapsed() > STEADY;
-            steady.then_some(since.duration_since(struck))
-        });
-        let again =
-            again.unwrap_or_else(|| panic!("fault {number}, {fault:?}: {}", launcher.said()));
-        println!(
-            "{number:3} {fault:?}: painting again after {:.2} s",
-            again.as_secs_f64()
-        );
+        let struck = attack.strike(fault, &launcher);
+        let again = paints_steadily(struck, &mut accepted);
+        let again = again.unwrap_or_else(|| panic!("{what}: {}", launcher.said()));
+        println!("{what}: painting again after {:.2} s", again.as_secs_f64());
         times.push(again);
         if fault.ends_a_node() {
-            ended.push(Instant::now());
+            failures.0.push(Instant::now());
         }
         drain(&mut status);
         let told = hear(&mut status, |_| true).expect("a status");
-        assert!(
-            told.committed >= committed,
-            "fault {number}, {fault:?}: {committed} were in the file"
-        );
-        assert_eq!(told.fault, "", "fault {number}, {fault:?}");
-        committed = told.committed;
+        let now = told.committed;
+        assert!(now >= committed, "{what}: {committed} were in the file");
+        assert_eq!(told.fault, "", "{what}");
+        committed = now;
         if matches!(fault, Fault::Flood | Fault::FastHand) {
-            held.push((
-                resident(attack.pid("maulstick-brush")),
-                resident(attack.pid("maulstick-paint")),
-            ));
+            let nodes = ["maulstick-brush", "maulstick-paint"];
+            held.push(nodes.map(|node| resident(attack.pid(node))));
         }
     }
-    times.sort();
-    println!(
-        "{} faults: painting again after {:.2} s in the median, {:.2} s at most; memory after floods {held:?}",
-        times.len(),
-        times[times.len() / 2].as_secs_f64(),
-        times[times.len() - 1].as_secs_f64()
-    );
-    if let (Some(first), Some(last)) = (held.first(), held.last()) {
-        assert!(
-            last.0 <= first.0 + MORE_BYTES && last.1 <= first.1 + MORE_BYTES,
-            "{held:?}"
-        );
-    }
+    print_times(times);
+    check_memory(&held);
     drop(attack);
     bus.close();
     launcher.close(&place);

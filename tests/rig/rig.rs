@@ -292,12 +292,8 @@ fn a_closed_window_ends_the_rig_with_success() {
     launcher.wait_says("is up");
     let window = display.window("Maulstick");
     display.close(window);
-    assert_eq!(
-        launcher.wait(PATIENCE).code(),
-        Some(0),
-        "{}",
-        launcher.said()
-    );
+    let code = launcher.wait(PATIENCE).code();
+    assert_eq!(code, Some(0), "{}", launcher.said());
     place.wait_empty(Duration::from_secs(2));
 }
 
@@ -322,10 +318,7 @@ fn commands_reach_a_running_rig() {
     place.done(&["undo"]);
     place.done(&["painting", "redo"]);
     place.done(&["brush", "clean"]);
-    place.done(&["snapshot", "-o", "p.png", "--ledger", "l.json"]);
-    let ledger: serde_json::Value = serde_json::from_slice(&place.bytes("l.json")).expect("JSON");
-    assert_eq!(ledger["quanta_missing"], 0);
-    assert!(ledger["accounts_m3"]["cleaner"].as_f64() > Some(0.0));
+    assert!(account(&place, "cleaner") > 0.0);
     let refused = place.run(&["snapshot", "-o", "no/p.png"]);
     let said = String::from_utf8_lossy(&refused.stderr).into_owned();
     assert_eq!(refused.status.code(), Some(1), "{said}");
@@ -416,17 +409,19 @@ fn is_unforced(sample: &StylusSample, head_length_m: f64) -> bool {
     pressed(sample, head_length_m) && sample.force_n == [0.0; 3]
 }
 
-#[test]
-fn a_simulated_hand_paints_and_feels_the_canvas() {
-    let place = Place::new();
+/// True if the hand presses and the canvas presses back, upward and never above the limit.
+fn presses_back(sample: &StylusSample, head_length_m: f64) -> bool {
+    let size = sample.force_n.iter().map(|f| f * f).sum::<f64>().sqrt();
+    assert!(size <= 3.0 + 1e-9, "{size} N");
+    pressed(sample, head_length_m) && sample.force_n[2] > 0.1
+}
+
+/// A rig whose simulated hand presses for minutes: its device stands turned and beside the desk, and its brush comes from
+/// a file.
+fn pressing_rig(place: &Place, brush: &BrushFile) -> Launcher {
     support::press_for_minutes(&place.path("press.mcap"));
-    let brush = BrushFile::library("round").expect("a brush");
-    std::fs::write(place.path("file.toml"), brush.to_toml().expect("a file")).expect("written");
-    let head_length_m = brush.scaled_to(10.0).expect("a size").length_m();
-    let mut config =
-        String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
-    // The device stands turned and beside the desk, and its brush comes from a file.
-    for (from, to) in [
+    place.write("file.toml", brush.to_toml().expect("a file"));
+    place.write_settings(&[
         ("# hand = \"demo.mcap\"", "hand = \"press.mcap\""),
         ("position_m = [0, 0, 0]", "position_m = [0.1, -0.2, 0.15]"),
         (
@@ -434,22 +429,12 @@ fn a_simulated_hand_paints_and_feels_the_canvas() {
             "orientation = [0.48, 0.36, 0, 0.8]",
         ),
         ("kind = \"round\"", "kind = \"file.toml\""),
-    ] {
-        assert!(config.contains(from), "{from}");
-        config = config.replace(from, to);
-    }
-    std::fs::write(place.path("rig.toml"), config).expect("written");
-    let mut launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
-    let (bus, topics) = support::join(&place);
-    let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
-    // The hand presses and the canvas presses back, upward and never above the limit.
-    let presses_back = |sample: &StylusSample| {
-        let size = sample.force_n.iter().map(|f| f * f).sum::<f64>().sqrt();
-        assert!(size <= 3.0 + 1e-9, "{size} N");
-        pressed(sample, head_length_m) && sample.force_n[2] > 0.1
-    };
-    let felt = hear(&mut samples, presses_back);
-    assert!(felt.is_some(), "no force: {}", launcher.said());
+    ]);
+    Launcher::up(place, &["--rig", "rig.toml"])
+}
+
+/// Gives orders of force, each of which the hand feels.
+fn order_force(place: &Place, samples: &mut Receiver<StylusSample>, head_length_m: f64) {
     for (order, gives, told) in [
         (&["off"][..], false, "force off"),
         (&["on"], true, "force on, 100 %"),
@@ -457,36 +442,54 @@ fn a_simulated_hand_paints_and_feels_the_canvas() {
         (&["strength", "60%"], true, "force on, 60 %"),
         (&["rearm", "--device", "phantom"], true, "force on, 60 %"),
     ] {
-        let said = place.done(&[&["device", "force"], order].concat()).stdout;
-        assert_eq!(String::from_utf8_lossy(&said), format!("phantom: {told}\n"));
-        let heard = if gives {
-            hear(&mut samples, presses_back)
-        } else {
-            hear(&mut samples, |sample| is_unforced(sample, head_length_m))
-        };
+        let said = place.text(&[&["device", "force"], order].concat());
+        assert_eq!(said, format!("phantom: {told}\n"));
+        let is_felt = if gives { presses_back } else { is_unforced };
+        let heard = hear(samples, |sample| is_felt(sample, head_length_m));
         assert!(heard.is_some(), "{order:?}");
     }
+}
+
+/// Waits until the hand has pressed without force for fifty samples, none of which is from the future.
+fn fades(
+    samples: &mut Receiver<StylusSample>,
+    head_length_m: f64,
+    now_ns: impl Fn() -> u64,
+) -> Option<()> {
+    let mut without = 0;
+    wait_for(PATIENCE, || {
+        while let Some(received) = samples.try_recv() {
+            let (stamp_ns, sample) = (received.header.event_ns, received.message);
+            assert!(stamp_ns <= now_ns(), "a stamp from the future");
+            if is_unforced(&sample, head_length_m) {
+                without += 1;
+            } else if pressed(&sample, head_length_m) {
+                without = 0;
+            }
+        }
+        (without >= 50).then_some(())
+    })
+}
+
+#[test]
+fn a_simulated_hand_paints_and_feels_the_canvas() {
+    let place = Place::new();
+    let brush = BrushFile::library("round").expect("a brush");
+    let head_length_m = brush.scaled_to(10.0).expect("a size").length_m();
+    let mut launcher = pressing_rig(&place, &brush);
+    let (bus, topics) = support::join(&place);
+    let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
+    let presses_back = |sample: &StylusSample| presses_back(sample, head_length_m);
+    let felt = hear(&mut samples, presses_back);
+    assert!(felt.is_some(), "no force: {}", launcher.said());
+    order_force(&place, &mut samples, head_length_m);
     let painted = || (support::on_canvas(&place) > 0.0).then_some(());
     wait_for(PATIENCE, painted).expect("painted");
     // Without its brush the force fades though the hand still presses, and comes back with it.
     let brush = place.pid("maulstick-brush").expect("a brush");
     signal(brush, Signal::SIGSTOP);
     drain(&mut samples);
-    let mut without = 0;
-    let faded = wait_for(PATIENCE, || {
-        while let Some(received) = samples.try_recv() {
-            let (stamp_ns, sample) = (received.header.event_ns, received.message);
-            assert!(stamp_ns <= bus.now_ns(), "a stamp from the future");
-            let none = sample.force_n == [0.0; 3];
-            without = match pressed(&sample, head_length_m) {
-                true if none => without + 1,
-                // It has lifted for a moment.
-                false => without,
-                true => 0,
-            };
-        }
-        (without >= 50).then_some(())
-    });
+    let faded = fades(&mut samples, head_length_m, || bus.now_ns());
     assert!(faded.is_some(), "the force is held");
     signal(brush, Signal::SIGKILL);
     launcher.wait_says("is started again");

@@ -57,6 +57,10 @@ fn line(from: [f64; 2], to: [f64; 2]) -> Vec<[i16; 2]> {
     (0..=60).map(at).collect()
 }
 
+fn is_light(pixel: [u8; 3]) -> bool {
+    pixel.iter().all(|channel| *channel > 180)
+}
+
 /// Whether a colour is a green.
 fn green([red, green, blue]: [u8; 3]) -> bool {
     green > red.saturating_add(12) && green > blue.saturating_add(12)
@@ -95,6 +99,111 @@ impl Painter {
         let mut writer = encoder.write_header().expect("a header");
         writer.write_image_data(&pixels.concat()).expect("written");
     }
+
+    /// Waits until a pixel is as `wanted`.
+    fn sees(&self, at: [i16; 2], wanted: impl Fn([u8; 3]) -> bool) -> bool {
+        let seen = wait_for(PATIENCE, || wanted(self.pixel(at)).then_some(()));
+        seen.is_some()
+    }
+
+    /// Takes the palette out and cleans the brush on it.
+    fn take_the_palette_out(&mut self) {
+        self.display.keys(&[u32::from(' ')]);
+        let out = self.scene("the palette out", |scene| {
+            surface(scene, PALETTE).pose.position_m[0] > -0.1
+        });
+        let palette = surface(&out, PALETTE);
+        let from_middle = palette.pose.position_m[0] + 0.064;
+        assert!(from_middle.abs() < 1e-6, "{palette:?}");
+        self.drag(&zigzag(28.0, -114.5, 12.0, 10.0));
+    }
+
+    /// Mixes yellow, and a little blue into it: green.
+    fn mix_green(&mut self) {
+        let heap = [-10.0, 40.0];
+        for (well, ways) in [(89.6, 2), (-12.8, 1)] {
+            self.drag(&zigzag(50.5, well, 10.0, 10.0));
+            for _ in 0..ways {
+                self.drag(&zigzag(heap[0], heap[1], 30.0, 16.0));
+            }
+        }
+        self.drag(&zigzag(heap[0], heap[1], 30.0, 16.0));
+        self.display.point(over(-50.0, -90.0));
+        let mixed = wait_for(PATIENCE, || {
+            let pixels = self.display.picture(self.window, WIDTH, HEIGHT);
+            let greens = pixels.iter().filter(|pixel| green(**pixel)).count();
+            (greens > 2000).then_some(greens)
+        });
+        self.keep_picture("palette.png");
+        assert!(mixed.is_some(), "nothing green was mixed");
+    }
+
+    fn put_the_palette_back(&self) {
+        self.display.keys(&[u32::from(' ')]);
+        self.scene("the palette back", |scene| {
+            surface(scene, PALETTE).pose.position_m[0] < -0.1
+        });
+    }
+
+    /// Paints a stroke during which the wheel zooms; the scene after it.
+    fn paint_while_the_wheel_zooms(&self) -> Scene {
+        let stroke = line([-80.0, 20.0], [0.0, 20.0]);
+        self.display.press(1, &stroke[..40]);
+        self.display.click_held(4, stroke[39]);
+        // Without a wheel's axis a notch is told twice: as its button is pressed, and as it is let go.
+        let zoomed = self.scene("a zoom", |scene| surface(scene, CANVAS).zoom > 1.2);
+        self.display.release(1, &stroke[40..]);
+        zoomed
+    }
+
+    /// Moves the canvas with the middle button.
+    fn move_the_canvas(&self, zoomed: &Scene) {
+        let before = surface(zoomed, CANVAS).pose.position_m;
+        self.display.press(2, &line([0.0, -60.0], [10.0, -40.0]));
+        self.display.release(2, &[]);
+        self.scene("a pan", |scene| {
+            surface(scene, CANVAS).pose.position_m[1] > before[1] + 0.015
+        });
+    }
+
+    /// Shows all of the canvas again.
+    fn fit_the_canvas(&self) {
+        self.display.keys(&[u32::from('0')]);
+        let fitted = self.scene("the whole canvas", |scene| {
+            surface(scene, CANVAS).zoom < 1.02
+        });
+        let [x, y, _] = surface(&fitted, CANVAS).pose.position_m;
+        assert!((x - y).abs() < 1e-9, "it lies in the middle");
+    }
+
+    /// Dries the canvas, takes that back, and dries it again.
+    fn dry(&self) {
+        self.display.keys(&[u32::from('d')]);
+        self.scene("a dry layer", |scene| scene.layers.len() == 1);
+        self.display.keys(&[CONTROL, u32::from('z')]);
+        self.scene("the drying taken back", |scene| scene.layers.is_empty());
+        self.display.keys(&[CONTROL, SHIFT, u32::from('z')]);
+        self.scene("the drying again", |scene| scene.layers.len() == 1);
+    }
+
+    fn open_and_close_the_panels(&self) {
+        self.display.keys(&[TAB]);
+        self.keep_picture("panels.png");
+        self.display.keys(&[TAB]);
+    }
+
+    /// Exports to the file that the dialog proposes, `path`.
+    fn export(&self, path: &Path) {
+        self.display.keys(&[CONTROL, u32::from('e')]);
+        // The desk is dimmed under a dialog.
+        let dimmed = self.sees(over(0.0, -110.0), |pixel| !is_light(pixel));
+        assert!(dimmed, "no dialog is shown");
+        self.keep_picture("export.png");
+        self.display.keys(&[RETURN]);
+        let written = wait_for(PATIENCE, || path.is_file().then_some(()));
+        self.keep_picture("exported.png");
+        assert!(written.is_some(), "nothing is exported");
+    }
 }
 
 /// Pixels of an exported picture of eight bits, and how many lie in a row.
@@ -110,6 +219,22 @@ fn exported(path: &Path) -> (Vec<[u8; 3]>, usize) {
         pixels.map(|p| [p[0], p[1], p[2]]).collect(),
         info.width as usize,
     )
+}
+
+/// The strokes lie where the hand made them, though the canvas was moved, and nothing lies beside them.
+fn check_strokes(path: &Path) {
+    let (pixels, wide) = exported(path);
+    let greens = |y: f64| {
+        let row = ((128.0 - y) / 256.0 * wide as f64) as usize;
+        let band = &pixels[(row - 40) * wide..(row + 40) * wide];
+        band.iter().filter(|pixel| green(**pixel)).count()
+    };
+    for y in [60.0, 20.0, -45.0] {
+        assert!(greens(y) > 500, "{y} mm: {} green cells", greens(y));
+    }
+    for y in [95.0, -10.0, -90.0] {
+        assert_eq!(greens(y), 0, "{y} mm");
+    }
 }
 
 #[test]
@@ -129,116 +254,27 @@ fn a_painter_mixes_paints_dries_takes_back_moves_the_canvas_and_exports() {
         display,
     };
     let first = painter.scene("a desk", |_| true);
-    let light = |pixel: [u8; 3]| pixel.iter().all(|channel| *channel > 180);
-    let shown = wait_for(PATIENCE, || {
-        light(painter.pixel(over(0.0, 0.0))).then_some(())
-    });
-    assert!(shown.is_some(), "the canvas is not shown");
-
-    // The palette slides out, and the brush is cleaned on it.
-    painter.display.keys(&[u32::from(' ')]);
-    let out = painter.scene("the palette out", |scene| {
-        surface(scene, PALETTE).pose.position_m[0] > -0.1
-    });
-    let middle = surface(&out, PALETTE);
-    assert!(
-        (middle.pose.position_m[0] + 0.064).abs() < 1e-6,
-        "{middle:?}"
-    );
-    painter.drag(&zigzag(28.0, -114.5, 12.0, 10.0));
-
-    // Yellow, and a little blue into it: green.
-    let heap = [-10.0, 40.0];
-    for (well, ways) in [(89.6, 2), (-12.8, 1)] {
-        painter.drag(&zigzag(50.5, well, 10.0, 10.0));
-        for _ in 0..ways {
-            painter.drag(&zigzag(heap[0], heap[1], 30.0, 16.0));
-        }
-    }
-    painter.drag(&zigzag(heap[0], heap[1], 30.0, 16.0));
-    painter.display.point(over(-50.0, -90.0));
-    let mixed = wait_for(PATIENCE, || {
-        let pixels = painter.display.picture(painter.window, WIDTH, HEIGHT);
-        let greens = pixels.iter().filter(|pixel| green(**pixel)).count();
-        (greens > 2000).then_some(greens)
-    });
-    painter.keep_picture("palette.png");
-    assert!(mixed.is_some(), "nothing green was mixed");
-
-    // Back beside the canvas, and a stroke during which the wheel zooms.
-    painter.display.keys(&[u32::from(' ')]);
-    painter.scene("the palette back", |scene| {
-        surface(scene, PALETTE).pose.position_m[0] < -0.1
-    });
-    painter.drag(&line([-80.0, 60.0], [80.0, 60.0]));
-    let stroke = line([-80.0, 20.0], [0.0, 20.0]);
-    painter.display.press(1, &stroke[..40]);
-    painter.display.click_held(4, stroke[39]);
-    // Without a wheel's axis a notch is told twice: as its button is pressed, and as it is let go.
-    let zoomed = painter.scene("a zoom", |scene| surface(scene, CANVAS).zoom > 1.2);
-    painter.display.release(1, &stroke[40..]);
     assert_eq!(surface(&first, CANVAS).zoom, 1.0);
+    let shown = painter.sees(over(0.0, 0.0), is_light);
+    assert!(shown, "the canvas is not shown");
 
-    // The middle button moves it, 0 shows all of it again.
-    let before = surface(&zoomed, CANVAS).pose.position_m;
-    painter.display.press(2, &line([0.0, -60.0], [10.0, -40.0]));
-    painter.display.release(2, &[]);
-    painter.scene("a pan", |scene| {
-        surface(scene, CANVAS).pose.position_m[1] > before[1] + 0.015
-    });
-    painter.display.keys(&[u32::from('0')]);
-    let fitted = painter.scene("the whole canvas", |scene| {
-        surface(scene, CANVAS).zoom < 1.02
-    });
-    let [x, y, _] = surface(&fitted, CANVAS).pose.position_m;
-    assert!((x - y).abs() < 1e-9, "it lies in the middle");
+    painter.take_the_palette_out();
+    painter.mix_green();
+    painter.put_the_palette_back();
+    painter.drag(&line([-80.0, 60.0], [80.0, 60.0]));
+    let zoomed = painter.paint_while_the_wheel_zooms();
+    painter.move_the_canvas(&zoomed);
+    painter.fit_the_canvas();
     painter.drag(&line([-60.0, -40.0], [70.0, -50.0]));
     painter.keep_picture("painted.png");
-
-    // Dried, taken back, and dried again.
-    painter.display.keys(&[u32::from('d')]);
-    painter.scene("a dry layer", |scene| scene.layers.len() == 1);
-    painter.display.keys(&[CONTROL, u32::from('z')]);
-    painter.scene("the drying taken back", |scene| scene.layers.is_empty());
-    painter.display.keys(&[CONTROL, SHIFT, u32::from('z')]);
-    painter.scene("the drying again", |scene| scene.layers.len() == 1);
-
-    // The panels come and go.
-    painter.display.keys(&[TAB]);
-    painter.keep_picture("panels.png");
-    painter.display.keys(&[TAB]);
-
-    painter.display.keys(&[CONTROL, u32::from('e')]);
-    // The desk is dimmed under a dialog, which proposes a file beside the painting.
-    let dimmed = wait_for(PATIENCE, || {
-        (!light(painter.pixel(over(0.0, -110.0)))).then_some(())
-    });
-    assert!(dimmed.is_some(), "no dialog is shown");
-    painter.keep_picture("export.png");
-    painter.display.keys(&[RETURN]);
+    painter.dry();
+    painter.open_and_close_the_panels();
     let path = place.path("day.png");
-    let written = wait_for(PATIENCE, || path.is_file().then_some(()));
-    painter.keep_picture("exported.png");
-    assert!(written.is_some(), "nothing is exported");
-    let (pixels, wide) = exported(&path);
-    // The strokes lie where the hand made them, though the canvas was moved, and nothing lies beside them.
-    let greens = |y: f64| {
-        let row = ((128.0 - y) / 256.0 * wide as f64) as usize;
-        let band = &pixels[(row - 40) * wide..(row + 40) * wide];
-        band.iter().filter(|pixel| green(**pixel)).count()
-    };
-    for y in [60.0, 20.0, -45.0] {
-        assert!(greens(y) > 500, "{y} mm: {} green cells", greens(y));
-    }
-    for y in [95.0, -10.0, -90.0] {
-        assert_eq!(greens(y), 0, "{y} mm");
-    }
+    painter.export(&path);
+    check_strokes(&path);
+
     painter.bus.close();
     painter.display.close(painter.window);
-    assert_eq!(
-        launcher.wait(PATIENCE).code(),
-        Some(0),
-        "{}",
-        launcher.said()
-    );
+    let code = launcher.wait(PATIENCE).code();
+    assert_eq!(code, Some(0), "{}", launcher.said());
 }

@@ -7,6 +7,7 @@ mod support;
 
 use std::collections::BTreeMap;
 use std::net::{TcpListener, TcpStream};
+use std::process::Command;
 
 use nix::sys::signal::Signal;
 use serde_json::{Value, json};
@@ -24,46 +25,46 @@ fn playing(place: &Place) -> Launcher {
     launcher
 }
 
+/// The program that compares the JSON channels of a recording with an export.
+fn comparison(place: &Place, recording: &str, lines: &str) -> Command {
+    let words = [recording, lines].map(|name| place.path(name).display().to_string());
+    python(place, "foxglove.py", &words.each_ref().map(String::as_str))
+}
+
 /// Messages of each topic in the JSON channels of a recording, which are those of an export.
 fn compared(place: &Place, recording: &str, lines: &str) -> BTreeMap<String, usize> {
-    let words = [recording, lines].map(|name| place.path(name).display().to_string());
-    let words = words.each_ref().map(String::as_str);
-    let counts = printed(&mut python(place, "foxglove.py", &words), b"");
+    let counts = printed(&mut comparison(place, recording, lines), b"");
     serde_json::from_str(&counts).expect("counts")
 }
 
-#[test]
-fn a_recording_and_its_export_have_json_channels_of_what_was_sent() {
-    let place = Place::new();
-    let launcher = playing(&place);
-    place.done(&["recording", "record", "-o", "s.mcap", "--seconds", "2"]);
-    place.done(&[
-        "recording",
-        "record",
-        "-o",
-        "none.mcap",
-        "--seconds",
-        "0.5",
-        "--json-hz",
-        "0",
-    ]);
-    launcher.close(&place);
-    let export = |recording: &str, form: &str, output: &str| {
-        let form = ["--format", form, "-o", output];
-        place.done(&[&["recording", "export", recording], &form[..]].concat());
-    };
-    export("s.mcap", "json", "s.json");
-    export("s.mcap", "foxglove", "f.mcap");
-    export("none.mcap", "json", "none.json");
-    let text = String::from_utf8(place.bytes("s.json")).expect("text");
-    let mut sent = BTreeMap::new();
-    for line in text.lines() {
+/// Records a rig with JSON channels as `s.mcap`, and without as `none.mcap`.
+fn record(place: &Place) {
+    let launcher = playing(place);
+    let record = ["recording", "record", "-o"];
+    place.done(&[&record[..], &["s.mcap", "--seconds", "2"]].concat());
+    let none = ["none.mcap", "--seconds", "0.5", "--json-hz", "0"];
+    place.done(&[&record[..], &none].concat());
+    launcher.close(place);
+}
+
+fn export(place: &Place, recording: &str, form: &str, output: &str) {
+    let form = ["--format", form, "-o", output];
+    place.done(&[&["recording", "export", recording], &form[..]].concat());
+}
+
+/// Messages of each topic in an export.
+fn counted(lines: &str) -> BTreeMap<String, usize> {
+    let mut counts = BTreeMap::new();
+    for line in lines.lines() {
         let line: Value = serde_json::from_str(line).expect("JSON");
         let topic = line["topic"].as_str().expect("a topic").to_owned();
-        *sent.entry(topic).or_insert(0) += 1;
+        *counts.entry(topic).or_insert(0) += 1;
     }
-    assert_eq!(compared(&place, "f.mcap", "s.json"), sent);
-    let thinned = compared(&place, "s.mcap", "s.json");
+    counts
+}
+
+/// The JSON channels of the recording have all topics, and of what is sent often only a part.
+fn check_thinned(thinned: &BTreeMap<String, usize>, sent: &BTreeMap<String, usize>) {
     assert!(thinned.keys().eq(sent.keys()), "{thinned:?} of {sent:?}");
     for topic in [
         "scene",
@@ -75,27 +76,34 @@ fn a_recording_and_its_export_have_json_channels_of_what_was_sent() {
     }
     let fast = "stylus/player/sample";
     assert!(thinned[fast] < sent[fast], "{thinned:?} of {sent:?}");
+}
+
+#[test]
+fn a_recording_and_its_export_have_json_channels_of_what_was_sent() {
+    let place = Place::new();
+    record(&place);
+    export(&place, "s.mcap", "json", "s.json");
+    export(&place, "s.mcap", "foxglove", "f.mcap");
+    export(&place, "none.mcap", "json", "none.json");
+    let text = String::from_utf8(place.bytes("s.json")).expect("text");
+    let sent = counted(&text);
+    assert_eq!(compared(&place, "f.mcap", "s.json"), sent);
+    check_thinned(&compared(&place, "s.mcap", "s.json"), &sent);
     assert!(compared(&place, "none.mcap", "none.json").is_empty());
     // A fault in one number is found.
     let wrong = text.replacen("\"in_range\":true", "\"in_range\":false", 1);
     assert_ne!(wrong, text);
-    std::fs::write(place.path("wrong.json"), wrong).expect("written");
-    let words = ["f.mcap", "wrong.json"].map(|name| place.path(name).display().to_string());
-    let words = words.each_ref().map(String::as_str);
-    let output = python(&place, "foxglove.py", &words).output();
+    place.write("wrong.json", wrong);
+    let output = comparison(&place, "f.mcap", "wrong.json").output();
     let output = output.expect("started");
     assert!(!output.status.success());
     has(
         &String::from_utf8_lossy(&output.stderr),
         &["stylus/player/sample", "is not what was recorded"],
     );
-    let words = ["recording", "export", "s.mcap", "--format", "foxglove"];
-    let said = fault(
-        &place,
-        &[&words[..], &["--field", "seq", "-o", "x.mcap"]].concat(),
-        2,
-    );
-    has(&said, &["--field"]);
+    let fields = ["recording", "export", "s.mcap", "--format", "foxglove"];
+    let fields = [&fields[..], &["--field", "seq", "-o", "x.mcap"]].concat();
+    has(&fault(&place, &fields, 2), &["--field"]);
 }
 
 /// A viewer of the bridge, which speaks the Foxglove protocol.
@@ -212,10 +220,7 @@ fn a_viewer_watches_a_rig_by_the_bridge() {
     // The scene is sent rarely: a viewer has the one that is kept.
     viewer.subscribe("scene", 1);
     let (_, mut scene) = viewer.hear(1);
-    let echo = place
-        .done(&["topic", "echo", "scene", "--once", "--json"])
-        .stdout;
-    let echo: Value = serde_json::from_slice(&echo).expect("JSON");
+    let echo = place.json(&["topic", "echo", "scene", "--once", "--json"]);
     let fields = scene.as_object_mut().expect("fields");
     let header = fields.remove("header").expect("a header");
     assert!(

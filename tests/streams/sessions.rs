@@ -3,11 +3,12 @@
 #[path = "../support/mod.rs"]
 mod support;
 
-use std::io::{BufRead as _, BufReader, Write as _};
+use std::io::{BufRead as _, BufReader};
 use std::process::Stdio;
 
 use nix::sys::signal::Signal;
 use serde_json::Value;
+use support::replay::Replay;
 use support::{Launcher, PATIENCE, Place, assert_same, fault, has, signal, wait_for};
 
 /// Small cells would take long.
@@ -82,39 +83,122 @@ struct Orders {
 fn ordered(place: &Place, name: &str, orders: &Orders) {
     let (rate, pause_s) = (orders.rate, orders.pause_s);
     let options = ["--rate", rate, "--json", "--document", name];
-    let mut command =
-        place.maulstick(&[&["recording", "replay", "t.mcap"], options.as_slice()].concat());
-    command.stdin(Stdio::piped()).stdout(Stdio::piped());
-    let mut child = command.spawn().expect("started");
-    let mut input = child.stdin.take().expect("piped");
-    let said = BufReader::new(child.stdout.take().expect("piped"));
-    let mut lines = said.lines().map_while(Result::ok);
+    let replay = [&["recording", "replay", "t.mcap"], options.as_slice()].concat();
+    let mut replay = Replay::start(place.maulstick(&replay));
     let mut paintings = 0;
-    let mut until = |is_so: &dyn Fn(&Value) -> bool| {
-        let found = lines.by_ref().any(|line| {
-            let line: Value = serde_json::from_str(&line).expect("JSON");
+    let mut until = |replay: &mut Replay, is_so: &dyn Fn(&Value) -> bool| {
+        replay.until(|line| {
             paintings += u32::from(line["painting"] == name);
-            is_so(&line)
+            is_so(line)
         });
-        assert!(found, "it ended");
     };
-    let mut order = |order: &str| writeln!(input, "{order}").expect("written");
     let position = |line: &Value| line["position_s"].as_f64().unwrap_or(0.0);
-    until(&|line| position(line) > pause_s);
-    order("pause");
-    until(&|line| line["paused"] == true);
-    order("step");
-    order("skip 0.5");
-    order("pause");
-    until(&|line| line["paused"] == false && position(line) > pause_s + 1.0);
-    order(&format!("seek {}", orders.seek_s));
-    until(&|line| line["painting"] == name);
-    order("rate 4");
-    until(&|line| line["rate"] == "4" && position(line) > orders.seek_s + 2.0);
-    order("rate max");
-    lines.by_ref().for_each(drop);
-    assert!(child.wait().expect("ended").success());
+    until(&mut replay, &|line| position(line) > pause_s);
+    replay.order("pause");
+    until(&mut replay, &|line| line["paused"] == true);
+    replay.order("step");
+    replay.order("skip 0.5");
+    replay.order("pause");
+    until(&mut replay, &|line| {
+        line["paused"] == false && position(line) > pause_s + 1.0
+    });
+    replay.order(&format!("seek {}", orders.seek_s));
+    until(&mut replay, &|line| line["painting"] == name);
+    replay.order("rate 4");
+    until(&mut replay, &|line| {
+        line["rate"] == "4" && position(line) > orders.seek_s + 2.0
+    });
+    replay.order("rate max");
+    replay.finish();
     assert_eq!(paintings, 2, "it was begun anew once");
+}
+
+/// Records how a rig paints, as `s.mcap`; the picture.
+fn recorded(place: &Place) -> Vec<u8> {
+    let blank = snapshot(place, "blank.png");
+    let mut recorder = recorder(place, "s.mcap");
+    let another = ["recording", "record", "-o", "s.mcap", "--seconds", "1"];
+    has(
+        &fault(place, &another, 1),
+        &["another program records into it"],
+    );
+    paint(place);
+    let painted = snapshot(place, "painted.png");
+    assert_ne!(painted, blank);
+    recorder.signal(Signal::SIGINT);
+    recorder.wait(PATIENCE);
+    painted
+}
+
+/// Makes the recording a take, `t.mcap`, of all that was done; its length, s.
+fn take_from_recording(place: &Place) -> f64 {
+    place.done(&["take", "from", "s.mcap", "-o", "t.mcap"]);
+    let info = place.json(&["take", "info", "t.mcap", "--json"]);
+    assert_eq!(info["painted"]["commands"].as_u64(), Some(8), "{info}");
+    assert!(info["painted"]["states"].as_u64() > Some(100), "{info}");
+    assert!(info["samples"]["left"].as_u64() > Some(100), "{info}");
+    assert!(info["samples"]["right"].as_u64() > Some(100), "{info}");
+    info["seconds"].as_f64().expect("a number")
+}
+
+/// Recording and take are rendered to the picture, on either backend.
+fn check_rendered(place: &Place, painted: &[u8]) {
+    for file in ["s.mcap", "t.mcap"] {
+        place.done(&["render", file, "-o", "again.png", "--overwrite"]);
+        assert_same(&place.bytes("again.png"), painted, file);
+    }
+    // What is decided of the backend is an entry of the journal.
+    let gpu = ["render", "s.mcap", "--backend", "gpu", "-o", "gpu.png"];
+    has(&place.text(&gpu), &["8 commands"]);
+}
+
+/// The second half is rendered to the picture, the first one is not.
+fn check_halves(place: &Place, half_s: f64, painted: &[u8]) {
+    let half = format!("{half_s:.2}");
+    let from = ["take", "from", "s.mcap", "-o"];
+    place.done(&[&from[..], &["half.mcap", "--start", &half]].concat());
+    let render = ["render", "half.mcap", "-o", "half.png"];
+    place.done(&[&render[..], &["--document", "half.maul"]].concat());
+    assert_same(&place.bytes("half.png"), painted, "the second half");
+    place.done(&[&from[..], &["less.mcap", "--end", &half]].concat());
+    place.done(&["render", "less.mcap", "-o", "less.png"]);
+    let less = place.bytes("less.png");
+    assert_ne!(less, painted, "the first half is not all");
+}
+
+/// The take is replayed to the picture, with another brush in hand by now.
+fn check_replayed(place: &Place, painted: &[u8]) {
+    place.done(&["brush", "take", "filbert"]);
+    place.done(&["recording", "replay", "t.mcap", "--rate", "max"]);
+    assert_same(&snapshot(place, "max.png"), painted, "as fast as can be");
+    let orders = Orders {
+        rate: "1",
+        pause_s: 2.0,
+        seek_s: 0.5,
+    };
+    ordered(place, "r.maul", &orders);
+    assert_same(&snapshot(place, "ordered.png"), painted, "with orders");
+    let again = ["recording", "replay", "t.mcap", "--document", "r.maul"];
+    has(&fault(place, &again, 1), &["never written over"]);
+}
+
+fn refuse_what_does_not_fit(place: &Place) {
+    for (command, words) in [
+        ("recording replay t.mcap --rate 0", &["rate"][..]),
+        ("recording replay t.mcap --start 1e6", &["s long"]),
+        (
+            "recording replay t.mcap -t none/*",
+            &["no topic none/*", "paint/journal"],
+        ),
+        ("recording replay s.mcap -t haptics/*/model", &["no topic"]),
+        ("take from hand.mcap -o x.mcap", &["no journal"]),
+        ("take from s.mcap -o x.mcap --start 9 --end 3", &["--start"]),
+    ] {
+        let args: Vec<&str> = command.split(' ').collect();
+        has(&fault(place, &args, 2), words);
+    }
+    let loaded = ["render", "t.mcap", "-o", "x.png", "--load", "Bone Black"];
+    has(&fault(place, &loaded, 2), &["leave out"]);
 }
 
 #[test]
@@ -123,111 +207,12 @@ fn a_session_is_painted_again_to_the_same_picture() {
     place.short_demo("hand.mcap", 6.0);
     let mut launcher = Launcher::up(&place, &[&["sea.maul"], CANVAS.as_slice()].concat());
     launcher.wait_says("is up");
-    let blank = snapshot(&place, "blank.png");
-    let mut recorder = recorder(&place, "s.mcap");
-    let taken = fault(
-        &place,
-        &["recording", "record", "-o", "s.mcap", "--seconds", "1"],
-        1,
-    );
-    has(&taken, &["another program records into it"]);
-    paint(&place);
-    let painted = snapshot(&place, "painted.png");
-    assert_ne!(painted, blank);
-    recorder.signal(Signal::SIGINT);
-    recorder.wait(PATIENCE);
-
-    place.done(&["take", "from", "s.mcap", "-o", "t.mcap"]);
-    let info = place.done(&["take", "info", "t.mcap", "--json"]).stdout;
-    let info: Value = serde_json::from_slice(&info).expect("JSON");
-    assert_eq!(info["painted"]["commands"].as_u64(), Some(8), "{info}");
-    assert!(info["painted"]["states"].as_u64() > Some(100), "{info}");
-    assert!(info["samples"]["left"].as_u64() > Some(100), "{info}");
-    assert!(info["samples"]["right"].as_u64() > Some(100), "{info}");
-
-    for file in ["s.mcap", "t.mcap"] {
-        place.done(&["render", file, "-o", "again.png", "--overwrite"]);
-        assert_same(&place.bytes("again.png"), &painted, file);
-    }
-    // What is decided of the backend is an entry of the journal.
-    let gpu = ["--backend", "gpu", "-o", "gpu.png"];
-    let said = place.done(&[&["render", "s.mcap"], gpu.as_slice()].concat());
-    let said = String::from_utf8_lossy(&said.stdout).into_owned();
-    has(&said, &["8 commands"]);
-    let half = info["seconds"].as_f64().expect("a number") / 2.0;
-    let half = format!("{half:.2}");
-    place.done(&[
-        "take",
-        "from",
-        "s.mcap",
-        "-o",
-        "half.mcap",
-        "--start",
-        &half,
-    ]);
-    place.done(&[
-        "render",
-        "half.mcap",
-        "-o",
-        "half.png",
-        "--document",
-        "half.maul",
-    ]);
-    assert_same(&place.bytes("half.png"), &painted, "the second half");
-    place.done(&["take", "from", "s.mcap", "-o", "less.mcap", "--end", &half]);
-    place.done(&["render", "less.mcap", "-o", "less.png"]);
-    assert_ne!(
-        place.bytes("less.png"),
-        painted,
-        "the first half is not all"
-    );
-
-    // Another brush is in hand by now.
-    place.done(&["brush", "take", "filbert"]);
-    place.done(&["recording", "replay", "t.mcap", "--rate", "max"]);
-    assert_same(&snapshot(&place, "max.png"), &painted, "as fast as can be");
-    let orders = Orders {
-        rate: "1",
-        pause_s: 2.0,
-        seek_s: 0.5,
-    };
-    ordered(&place, "r.maul", &orders);
-    assert_same(&snapshot(&place, "ordered.png"), &painted, "with orders");
-
-    let refused = |args: &[&str], words: &[&str]| has(&fault(&place, args, 2), words);
-    let taken = fault(
-        &place,
-        &["recording", "replay", "t.mcap", "--document", "r.maul"],
-        1,
-    );
-    has(&taken, &["never written over"]);
-    refused(&["recording", "replay", "t.mcap", "--rate", "0"], &["rate"]);
-    refused(
-        &["recording", "replay", "t.mcap", "--start", "1e6"],
-        &["s long"],
-    );
-    refused(
-        &["recording", "replay", "t.mcap", "-t", "none/*"],
-        &["no topic none/*", "paint/journal"],
-    );
-    refused(
-        &["recording", "replay", "s.mcap", "-t", "haptics/*/model"],
-        &["no topic"],
-    );
-    refused(
-        &["render", "t.mcap", "-o", "x.png", "--load", "Bone Black"],
-        &["leave out"],
-    );
-    refused(
-        &["take", "from", "hand.mcap", "-o", "x.mcap"],
-        &["no journal"],
-    );
-    refused(
-        &[
-            "take", "from", "s.mcap", "-o", "x.mcap", "--start", "9", "--end", "3",
-        ],
-        &["--start"],
-    );
+    let painted = recorded(&place);
+    let length_s = take_from_recording(&place);
+    check_rendered(&place, &painted);
+    check_halves(&place, length_s / 2.0, &painted);
+    check_replayed(&place, &painted);
+    refuse_what_does_not_fit(&place);
     launcher.close(&place);
 }
 
@@ -241,8 +226,7 @@ fn a_paint_node_that_dies_begins_another_file_and_each_is_painted_again() {
     place.done(&["load", "Bone Black"]);
     stroke(&place, "left", "3");
     // While it levels each moment has a picture of its own, and its place in the journal says which.
-    let levelling = place.done(&["snapshot", "-o", "levelling.png", "--json"]);
-    let levelling: Value = serde_json::from_slice(&levelling.stdout).expect("JSON");
+    let levelling = place.json(&["snapshot", "-o", "levelling.png", "--json"]);
     stroke(&place, "left", "3");
     let paint = place.pid("maulstick-paint").expect("a paint node");
     signal(paint, Signal::SIGKILL);
@@ -336,8 +320,7 @@ fn five_minutes_with_forty_commands_are_painted_again_ten_times_out_of_ten() {
     recorder.signal(Signal::SIGINT);
     recorder.wait(PATIENCE);
     place.done(&["take", "from", "s.mcap", "-o", "t.mcap"]);
-    let info = place.done(&["take", "info", "t.mcap", "--json"]).stdout;
-    let info: Value = serde_json::from_slice(&info).expect("JSON");
+    let info = place.json(&["take", "info", "t.mcap", "--json"]);
     assert_eq!(info["painted"]["commands"].as_u64(), Some(40), "{info}");
     place.done(&["render", "t.mcap", "-o", "rendered.png"]);
     assert_same(&place.bytes("rendered.png"), &painted, "rendered");

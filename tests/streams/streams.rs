@@ -79,8 +79,7 @@ fn beside_a_sender(work: impl FnOnce(&Place)) -> u64 {
 }
 
 /// The stream of the sender in what a command prints in JSON.
-fn stream(json: &[u8]) -> Value {
-    let said: Value = serde_json::from_slice(json).expect("JSON");
+fn stream(said: &Value) -> Value {
     let streams = said["streams"].as_array().expect("streams").clone();
     let of_sender = |stream: &Value| stream["topic"] == "control/puck/sample";
     streams.into_iter().find(of_sender).expect("the sender's")
@@ -124,66 +123,53 @@ fn check_few_files(place: &Place) {
     }
 }
 
+/// Fields of the newest sample of the sender are those that it sent, in JSON and in columns.
+fn check_echo(place: &Place) {
+    let echo = ["topic", "echo", "control/*/sample", "--once"];
+    let json = place.json(&[&echo[..], &["--json"]].concat());
+    let number = json["seq"].as_f64().expect("a number");
+    let push = json["value"]["push"][0].as_f64().expect("a push");
+    assert!((push - number * 1e-6).abs() < 1e-12);
+    let columns = ["--csv", "--field", "push.0", "--field", "switches"];
+    let csv = place.text(&[&echo[..], &columns].concat());
+    let rows: Vec<&str> = csv.lines().collect();
+    assert_eq!(rows[0], "topic,arrived_ns,seq,event_ns,push.0,switches");
+    assert!(rows[1].starts_with("control/puck/sample,") && rows[1].ends_with(",0"));
+    let wrong = [&echo[..], &["--field", "pusch.0"]].concat();
+    has(&fault(place, &wrong, 2), &["pusch.0", "push.0"]);
+}
+
+/// Lists of what is under way have the sender, the nodes and what was said before they came.
+fn check_lists(place: &Place) {
+    let once = ["--once", "--json", "--seconds"];
+    let latency = place.json(&[&["topic", "latency"], &once[..], &["1.5"]].concat());
+    let streams = latency["streams"].as_array().expect("streams");
+    for topic in ["control/puck/sample", "paint/status"] {
+        let is_timed =
+            |stream: &Value| stream["topic"] == topic && stream["transit_ns"]["p50"].is_u64();
+        assert!(streams.iter().any(is_timed), "{topic}: {latency}");
+    }
+    let nodes = place.json(&["node", "list", "--json"]);
+    let nodes = nodes.as_array().expect("nodes").iter();
+    let nodes: Vec<&str> = nodes.filter_map(|node| node["name"].as_str()).collect();
+    assert!(
+        ["brush-main", "paint"]
+            .iter()
+            .all(|name| nodes.contains(name)),
+        "{nodes:?}"
+    );
+    let scene = place.json(&[&["topic", "list", "scene"], &once[..], &["0.5"]].concat());
+    assert_eq!(scene["streams"][0]["topic"], "scene");
+}
+
 #[test]
 fn what_a_sender_leaves_out_is_counted_exactly_and_its_contents_are_shown() {
     beside_a_sender(|place| {
         check_few_files(place);
-        let hz = place
-            .done(&["topic", "hz", "control/**", "--seconds", "1", "--json"])
-            .stdout;
-        check_losses(&stream(&hz));
-        let echo = place
-            .done(&["topic", "echo", "control/*/sample", "--once", "--json"])
-            .stdout;
-        let echo: Value = serde_json::from_slice(&echo).expect("JSON");
-        let number = echo["seq"].as_f64().expect("a number");
-        assert!((echo["value"]["push"][0].as_f64().expect("a push") - number * 1e-6).abs() < 1e-12);
-        let csv = place.done(&[
-            "topic",
-            "echo",
-            "control/*/sample",
-            "--once",
-            "--csv",
-            "--field",
-            "push.0",
-            "--field",
-            "switches",
-        ]);
-        let csv = String::from_utf8(csv.stdout).expect("text");
-        let rows: Vec<&str> = csv.lines().collect();
-        assert_eq!(rows[0], "topic,arrived_ns,seq,event_ns,push.0,switches");
-        assert!(rows[1].starts_with("control/puck/sample,") && rows[1].ends_with(",0"));
-        let latency = place
-            .done(&["topic", "latency", "--once", "--seconds", "1.5"])
-            .stdout;
-        has(
-            &String::from_utf8_lossy(&latency),
-            &["on the way p50", "control/puck/sample", "paint/status"],
-        );
-        let nodes = String::from_utf8(place.done(&["node", "list"]).stdout).expect("text");
-        has(&nodes, &["brush-main", "paint"]);
-        // What was said before one came is heard too.
-        has(
-            &String::from_utf8_lossy(
-                &place
-                    .done(&["topic", "list", "scene", "--once", "--seconds", "0.5"])
-                    .stdout,
-            ),
-            &["Scene"],
-        );
-        let wrong = fault(
-            place,
-            &[
-                "topic",
-                "echo",
-                "control/*/sample",
-                "--once",
-                "--field",
-                "pusch.0",
-            ],
-            2,
-        );
-        has(&wrong, &["pusch.0", "push.0"]);
+        let rates = ["topic", "hz", "control/**", "--seconds", "1", "--json"];
+        check_losses(&stream(&place.json(&rates)));
+        check_echo(place);
+        check_lists(place);
         has(
             &fault(place, &["topic", "hz", "a//b", "--once"], 2),
             &["malformed", "**"],
@@ -198,8 +184,7 @@ fn what_a_sender_leaves_out_is_counted_exactly_and_its_contents_are_shown() {
 #[test]
 fn a_graph_shows_who_sends_what_to_whom() {
     beside_a_sender(|place| {
-        let said = place.done(&["topic", "graph", "--json"]).stdout;
-        let said: Value = serde_json::from_slice(&said).expect("JSON");
+        let said = place.json(&["topic", "graph", "--json"]);
         let processes = said["processes"].as_array().expect("processes");
         let names: Vec<&str> = processes
             .iter()
@@ -224,112 +209,70 @@ fn a_graph_shows_who_sends_what_to_whom() {
             assert!(is_there(from, topic, to), "{from} {topic} {to}: {said}");
         }
         assert!(!is_there("paint", "paint/consumed", "launcher"));
-        let mermaid = String::from_utf8(place.done(&["topic", "graph"]).stdout).expect("text");
         has(
-            &mermaid,
+            &place.text(&["topic", "graph"]),
             &["flowchart LR", "[\"test\"]", "brush/main/state", "scene"],
         );
         place.done(&["topic", "graph", "-o", "rig.svg"]);
         assert!(place.bytes("rig.svg").starts_with(b"<svg"));
         place.done(&["topic", "graph", "-o", "rig.mmd"]);
         assert!(place.bytes("rig.mmd").starts_with(b"flowchart LR"));
-        std::fs::write(place.path("rig.svg"), "my diary").expect("written");
+        place.write("rig.svg", "my diary");
         fault(place, &["topic", "graph", "-o", "rig.svg"], 1);
     });
+}
+
+/// A recording has the sender's stream, all that is kept, and the rig's settings; the sender's messages in it.
+fn check_recording(place: &Place, name: &str) -> u64 {
+    let info = place.json(&["recording", "info", name, "--json"]);
+    let (messages, _) = check_losses(&stream(&info));
+    assert_eq!(info["damage"], Value::Null);
+    assert_eq!(info["files"][0], "rig.toml");
+    assert_eq!(info["notes"]["counts"]["dropped"], "0");
+    let streams = info["streams"].as_array().expect("streams").iter();
+    let topics: Vec<&str> = streams
+        .filter_map(|stream| stream["topic"].as_str())
+        .collect();
+    for topic in ["scene", "brush/main/def", "paint/status"] {
+        assert!(topics.contains(&topic), "{topic} is missing in {topics:?}");
+    }
+    messages
+}
+
+/// A table has a row for each of the sender's messages, without those that it left out.
+fn check_table(table: &str, messages: u64) {
+    assert_eq!(table.lines().count() as u64, messages + 1);
+    let rows = table.lines().skip(1);
+    let numbers: Vec<u64> = rows
+        .filter_map(|row| row.split(',').nth(2)?.parse().ok())
+        .collect();
+    assert!(numbers.is_sorted() && numbers.iter().all(|number| number % EACH != EACH - 1));
 }
 
 #[test]
 fn a_recording_holds_what_was_sent_and_is_exported() {
     let mut recorded = 0;
     let sent = beside_a_sender(|place| {
-        let path = place.path("s.mcap");
-        let path = path.to_str().expect("text");
-        place.done(&["recording", "record", "-o", path, "--seconds", "1.5"]);
-        let info = place.done(&["recording", "info", path, "--json"]).stdout;
-        let (messages, _) = check_losses(&stream(&info));
-        recorded = messages;
-        let whole: Value = serde_json::from_slice(&info).expect("JSON");
-        assert_eq!(whole["damage"], Value::Null);
-        assert_eq!(whole["files"][0], "rig.toml");
-        assert_eq!(whole["notes"]["counts"]["dropped"], "0");
-        let topics: Vec<&str> = whole["streams"]
-            .as_array()
-            .expect("streams")
-            .iter()
-            .filter_map(|stream| stream["topic"].as_str())
-            .collect();
-        for topic in ["scene", "brush/main/def", "paint/status"] {
-            assert!(topics.contains(&topic), "{topic} is missing in {topics:?}");
-        }
-        let csv = place.path("s.csv");
-        let csv = csv.to_str().expect("text");
-        place.done(&[
-            "recording",
-            "export",
-            path,
-            "--topic",
-            "control/**",
-            "--field",
-            "push.0",
-            "-o",
-            csv,
-        ]);
-        let text = std::fs::read_to_string(csv).expect("read");
-        assert_eq!(text.lines().count() as u64, messages + 1);
-        let numbers: Vec<u64> = text
-            .lines()
-            .skip(1)
-            .filter_map(|row| row.split(',').nth(2)?.parse().ok())
-            .collect();
-        assert!(numbers.is_sorted() && numbers.iter().all(|number| number % EACH != EACH - 1));
+        place.done(&["recording", "record", "-o", "s.mcap", "--seconds", "1.5"]);
+        recorded = check_recording(place, "s.mcap");
+        let export = ["recording", "export", "s.mcap", "--topic", "control/**"];
+        let export = [&export[..], &["-o", "s.csv"]].concat();
+        place.done(&[&export[..], &["--field", "push.0"]].concat());
+        let table = String::from_utf8(place.bytes("s.csv")).expect("text");
+        check_table(&table, recorded);
         // Over itself it may be written again, over another file not.
-        place.done(&[
-            "recording",
-            "export",
-            path,
-            "--topic",
-            "control/**",
-            "-o",
-            csv,
-            "--format",
-            "json",
-        ]);
-        std::fs::write(csv, "my diary").expect("written");
-        fault(
-            place,
-            &[
-                "recording",
-                "export",
-                path,
-                "--topic",
-                "control/**",
-                "-o",
-                csv,
-            ],
-            1,
-        );
+        place.done(&[&export[..], &["--format", "json"]].concat());
+        place.write("s.csv", "my diary");
+        fault(place, &export, 1);
+        let misspelt = ["recording", "export", "s.mcap", "-o", "x.csv"];
+        let misspelt = [&misspelt[..], &["--topic", "contrl/puck/sample"]].concat();
+        has(&fault(place, &misspelt, 2), &["control/puck/sample"]);
         has(
-            &fault(
-                place,
-                &[
-                    "recording",
-                    "export",
-                    path,
-                    "--topic",
-                    "contrl/puck/sample",
-                    "-o",
-                    "x.csv",
-                ],
-                2,
-            ),
-            &["control/puck/sample"],
+            &fault(place, &["recording", "info", "s.csv"], 2),
+            &["an MCAP"],
         );
-        has(&fault(place, &["recording", "info", csv], 2), &["an MCAP"]);
-        fault(
-            place,
-            &["recording", "record", "-o", csv, "--seconds", "1"],
-            2,
-        );
+        let over = ["recording", "record", "-o", "s.csv", "--seconds", "1"];
+        fault(place, &over, 2);
     });
     assert!(recorded <= sent);
 }
@@ -338,7 +281,7 @@ fn a_recording_holds_what_was_sent_and_is_exported() {
 fn further_files_stand_over_none_and_each_has_what_is_sent_rarely() {
     beside_a_sender(|place| {
         let path = place.path("s.mcap");
-        std::fs::write(place.path("s-2.mcap"), "my diary").expect("written");
+        place.write("s-2.mcap", "my diary");
         let path = path.to_str().expect("text");
         place.done(&[
             "recording",
@@ -353,9 +296,7 @@ fn further_files_stand_over_none_and_each_has_what_is_sent_rarely() {
         let diary = std::fs::read_to_string(place.path("s-2.mcap")).expect("read");
         assert_eq!(diary, "my diary");
         for name in ["s.mcap", "s-3.mcap"] {
-            let file = place.path(name);
-            let info = place.done(&["recording", "info", file.to_str().expect("text"), "--json"]);
-            let said: Value = serde_json::from_slice(&info.stdout).expect("JSON");
+            let said = place.json(&["recording", "info", name, "--json"]);
             let streams = said["streams"].as_array().expect("streams");
             let mut topics = streams.iter().map(|stream| &stream["topic"]);
             assert!(topics.any(|topic| topic == "scene"), "{name}: {said}");
@@ -383,9 +324,8 @@ fn a_killed_recorder_leaves_what_it_had_written_and_a_rig_that_ends_ends_it() {
         assert!(grown.is_some(), "{}", recorder.said());
         recorder.signal(Signal::SIGKILL);
         recorder.wait(PATIENCE);
-        let info = place.done(&["recording", "info", path, "--json"]).stdout;
-        check_losses(&stream(&info));
-        let said: Value = serde_json::from_slice(&info).expect("JSON");
+        let said = place.json(&["recording", "info", path, "--json"]);
+        check_losses(&stream(&said));
         assert!(said["damage"].is_string(), "{said}");
     });
     let place = Place::new();
@@ -406,8 +346,7 @@ fn a_killed_recorder_leaves_what_it_had_written_and_a_rig_that_ends_ends_it() {
     assert!(begun.is_some(), "{}", recorder.said());
     launcher.close(&place);
     assert!(recorder.wait(PATIENCE).success(), "{}", recorder.said());
-    let whole = place.done(&["recording", "info", path.to_str().expect("text"), "--json"]);
-    let whole: Value = serde_json::from_slice(&whole.stdout).expect("JSON");
+    let whole = place.json(&["recording", "info", "s.mcap", "--json"]);
     assert_eq!(whole["damage"], Value::Null);
     has(
         &fault(&place, &["recording", "record", "-o", "x.mcap"], 1),

@@ -11,6 +11,7 @@
 
 pub mod display;
 pub mod place;
+pub mod replay;
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::{Path, PathBuf};
@@ -59,6 +60,21 @@ impl Place {
             .into_iter()
             .find(|(_, line)| line.starts_with(&name))
             .map(|(pid, _)| pid)
+    }
+
+    /// What a command that must succeed prints as JSON.
+    pub fn json(&self, args: &[&str]) -> serde_json::Value {
+        serde_json::from_str(&self.text(args)).expect("JSON")
+    }
+
+    /// Writes `rig.toml`: the built-in settings with other lines in place of some.
+    pub fn write_settings(&self, others: &[(&str, &str)]) {
+        let mut settings = self.text(&["up", "--print-config"]);
+        for (line, other) in others {
+            assert!(settings.contains(line), "{line}");
+            settings = settings.replace(line, other);
+        }
+        self.write("rig.toml", settings);
     }
 
     /// Waits until no process of a rig in this place is left.

@@ -89,6 +89,15 @@ impl Place {
         output
     }
 
+    /// What a command that must succeed prints.
+    pub fn text(&self, args: &[&str]) -> String {
+        String::from_utf8(self.done(args).stdout).expect("UTF-8")
+    }
+
+    pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
+        std::fs::write(self.path(name), bytes).expect("written");
+    }
+
     /// A demo of the first `seconds`, as `name`.
     pub fn short_demo(&self, name: &str, seconds: f64) {
         let take = maulstick_device::demo::performance(maulstick_device::demo::Subject::Flower, 3);

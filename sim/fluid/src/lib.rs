@@ -49,6 +49,7 @@ pub mod polygon;
 pub mod solver;
 pub mod stress;
 pub mod sweep;
+mod viscosity;
 
 pub use geometry::{Boundary, ProbeState, Vessel};
 pub use grid::Grid;

@@ -10,6 +10,7 @@ use crate::geometry::{Boundary, Geometry, ProbeState, Vessel};
 use crate::grid::Grid;
 use crate::polygon::Shape;
 use crate::stress::{Fluid, Medium, StaggeredFields, Wrench, face_stresses};
+use crate::viscosity::{Diffusion, SolidLink};
 
 /// Residual of a solve by its right side.
 const TOLERANCE: f64 = 1e-6;
@@ -21,13 +22,13 @@ const LEAST_OPEN: f64 = 1e-6;
 /// Grid, vessel, fluid and probe of a bench.
 #[derive(Clone, Debug)]
 pub struct Bench {
-    /// The grid.
+    /// Cells that the equations are solved on.
     pub grid: Grid,
-    /// The vessel's walls.
+    /// Walls around the fluid.
     pub vessel: Vessel,
-    /// The fluid.
+    /// Viscosity and density of what fills the vessel.
     pub fluid: Fluid,
-    /// The probe's shape.
+    /// Outline of the probe at rest.
     pub shape: Shape,
     /// Boundary of the probe on the grid.
     pub boundary: Boundary,
@@ -138,80 +139,35 @@ impl Flow {
     }
 
     fn diffuse_axis(&mut self, axis: usize, dt_s: f64) {
-        let (grid, geometry) = (&self.bench.grid, &self.geometry);
-        let h = grid.cell_m;
-        let rate = self.bench.fluid.viscosity_m2_s * dt_s / (h * h);
-        let [width, height] = grid.faces(axis);
-        let mut system = FivePoint::new(width, height);
-        let mut right_side = vec![0.0; width * height];
+        let grid = &self.bench.grid;
+        let rate = self.bench.fluid.viscosity_m2_s * dt_s / (grid.cell_m * grid.cell_m);
         let values = &mut self.velocity[axis];
-        let rigid = &geometry.rigid[axis];
-        for (at, value) in values.iter_mut().enumerate() {
-            if geometry.is_fixed(axis, at) {
-                *value = rigid[at];
-            } else {
-                let mass = 1.0 - geometry.solid[axis][at];
-                system.diagonal[at] = mass;
-                right_side[at] = mass * *value;
-            }
-        }
-        // A wall of the grid beside a row of faces is half a cell away, and stands.
-        let beside = 1 - axis;
-        for at in 0..values.len() {
-            let place = [at % width, at / width][beside];
-            if !geometry.is_fixed(axis, at) && (place == 0 || place + 1 == grid.cells[beside]) {
-                system.diagonal[at] += 2.0 * rate;
-            }
-        }
-        let mut into_probe = Vec::new();
-        for along in 0..2 {
-            let stride = [1, width][along];
-            for at in 0..values.len() {
-                if [at % width, at / width][along] + 1 >= [width, height][along] {
-                    continue;
-                }
-                let next = at + stride;
-                let coupling = geometry.links[axis][along][at];
-                // The solid's own motion does not strain it.
-                let own_motion = rate * (coupling - 1.0) * (rigid[next] - rigid[at]);
-                let coupling = rate * coupling;
-                match (geometry.is_fixed(axis, at), geometry.is_fixed(axis, next)) {
-                    (true, true) => {}
-                    (false, false) => {
-                        system.diagonal[at] += coupling;
-                        system.diagonal[next] += coupling;
-                        right_side[at] -= own_motion;
-                        right_side[next] += own_motion;
-                        let row = match along {
-                            0 => &mut system.right,
-                            _ => &mut system.up,
-                        };
-                        row[at] = coupling;
-                    }
-                    (false, true) => {
-                        system.diagonal[at] += coupling;
-                        right_side[at] += coupling * values[next] - own_motion;
-                        into_probe.push((at, next, along));
-                    }
-                    (true, false) => {
-                        system.diagonal[next] += coupling;
-                        right_side[next] += coupling * values[at] + own_motion;
-                        into_probe.push((next, at, along));
-                    }
-                }
-            }
-        }
-        system.solve(&right_side, values, TOLERANCE, ITERATIONS);
+        let mut diffusion = Diffusion::new(&self.geometry, axis, grid.faces(axis), rate, values);
+        diffusion.add_walls();
+        diffusion.add_links(values);
+        diffusion
+            .system
+            .solve(&diffusion.right_side, values, TOLERANCE, ITERATIONS);
+        let links = diffusion.solid_links;
+        self.add_viscous_force(axis, &links);
+    }
+
+    /// Adds the viscous force through the links into the probe.
+    fn add_viscous_force(&mut self, axis: usize, links: &[SolidLink]) {
+        let (grid, geometry) = (&self.bench.grid, &self.geometry);
+        let [width, _] = grid.faces(axis);
+        let (values, rigid) = (&self.velocity[axis], &geometry.rigid[axis]);
         let mu = self.bench.fluid.dynamic_pa_s();
-        for (outer, inner, along) in into_probe {
-            if geometry.probe[axis][inner] <= 0.0 {
+        for link in links {
+            if geometry.probe[axis][link.inner] <= 0.0 {
                 continue;
             }
-            let lower = outer.min(inner);
+            let lower = link.outer.min(link.inner);
             let mut place = grid.face_m(axis, [lower % width, lower / width]);
-            place[along] += 0.5 * h;
+            place[link.along] += 0.5 * grid.cell_m;
+            let coupling = geometry.links[axis][link.along][lower];
             let mut force = [0.0; 2];
-            force[axis] = mu * geometry.links[axis][along][lower] * (values[outer] - rigid[outer]);
+            force[axis] = mu * coupling * (values[link.outer] - rigid[link.outer]);
             let about = self.state.place_m;
             self.viscous
                 .add(force, [place[0] - about[0], place[1] - about[1]]);
@@ -304,7 +260,7 @@ impl Flow {
         wrench
     }
 
-    /// The probe.
+    /// Place and motion of the probe at the end of the newest step.
     #[must_use]
     pub fn state(&self) -> &ProbeState {
         &self.state

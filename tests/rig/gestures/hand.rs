@@ -30,7 +30,7 @@ const IN_PANELS: [[i16; 2]; 2] = [[1171, 25], [383, 25]];
 /// What a gesture may do to the steps of undo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Effect {
-    /// Nothing.
+    /// No step is begun.
     Nothing,
     /// One stroke, or none where the brush neither gives nor takes.
     Stroke,
@@ -247,10 +247,8 @@ impl Hand {
 
     /// Does a gesture; its name and what it may do.
     pub(crate) fn gesture(&mut self) -> (String, Effect) {
-        let key = |letter: char| u32::from(letter);
         self.hurried = self.below(2) == 0;
-        let kind = self.below(24);
-        let (name, effect) = match kind {
+        let (name, effect) = match self.below(24) {
             0..=5 => {
                 self.stroke();
                 ("stroke", Effect::Stroke)
@@ -273,7 +271,7 @@ impl Hand {
             10 => {
                 let way = self.on_canvas();
                 // What it lifts is what was painted; how the brush is used is no step.
-                self.drag_with(&[key('c')], &way);
+                self.drag_with(&[u32::from('c')], &way);
                 ("lifting stroke", Effect::Command)
             }
             11..=13 => {
@@ -281,75 +279,100 @@ impl Hand {
                 self.go(&way);
                 ("hover", Effect::Nothing)
             }
-            14 => {
-                let at = self.within(CANVAS_AREA).map(|at| at as i16);
-                let (notches, button) = (1 + self.below(3), 4 + self.below(2) as u8);
-                for _ in 0..notches {
-                    self.display.click(button, at);
-                }
-                ("wheel", Effect::Nothing)
-            }
-            15 => {
-                let way = self.on_canvas();
-                let keys: &[u32] = [&[][..], &[SHIFT], &[0xffe9]][self.below(3) as usize];
-                self.display.hold(keys);
-                self.drag(2, &way[..way.len().min(12)]);
-                self.display.let_go(keys);
-                ("move of the canvas", Effect::Nothing)
-            }
-            16 => {
-                let way = self.on_canvas();
-                let letter = ['s', 'z'][self.below(2) as usize];
-                self.drag_with(&[key(letter)], &way[..way.len().min(8)]);
-                ("drag with a key", Effect::Nothing)
-            }
-            17 => {
-                // From the panels over the canvas: nobody paints; over them from the canvas: one stroke.
-                self.display.keys(&[TAB]);
-                self.settle();
-                let mut way = self.way([450.0, 60.0, 700.0, 700.0]);
-                way.insert(0, IN_PANELS[usize::from(self.mirrored)]);
-                self.drag(1, &way);
-                self.display.keys(&[ESCAPE]);
-                self.display.keys(&[TAB]);
-                ("drag out of the panels", Effect::Nothing)
-            }
-            18 => {
-                let keys = [
-                    "[", "]", "b", ",", ".", "t", "-", "=", "m", "0", "1", " ", "[", "]", "b",
-                ];
-                let word = keys[self.below(keys.len() as u32) as usize];
-                let shown = word.chars().map(key);
-                let shown: Vec<u32> = shown.collect();
-                self.mirrored ^= word == "m";
-                self.display.keys(&shown);
-                return (format!("key '{word}'"), Effect::Nothing);
-            }
-            19 => {
-                for _ in 0..1 + self.below(3) {
-                    self.display.keys(&[key('b')]);
-                }
-                ("another brush", Effect::Nothing)
-            }
-            20 => {
-                self.display.keys(&[CONTROL, key('z')]);
-                ("undo", Effect::Command)
-            }
-            21 => {
-                self.display.keys(&[CONTROL, SHIFT, key('z')]);
-                ("redo", Effect::Command)
-            }
-            22 => {
-                let letter = ['d', 'c', 'i', 'i'][self.below(4) as usize];
-                self.display.keys(&[key(letter)]);
-                return (format!("key '{letter}'"), Effect::Command);
-            }
-            _ => {
-                self.display.keys(&[BACKSPACE]);
-                ("scrape", Effect::Command)
-            }
+            kind @ 14..=19 => return (self.handle_view(kind), Effect::Nothing),
+            kind => return self.command(kind),
         };
         (name.to_owned(), effect)
+    }
+
+    /// Handles the view or chooses a brush, by the number among the [gestures](Self::gesture); its name.
+    fn handle_view(&mut self, kind: u32) -> String {
+        let name = match kind {
+            14 => {
+                self.turn_wheel();
+                "wheel"
+            }
+            15 => {
+                self.move_canvas();
+                "move of the canvas"
+            }
+            16 => {
+                self.drag_with_a_key();
+                "drag with a key"
+            }
+            17 => {
+                self.drag_out_of_panels();
+                "drag out of the panels"
+            }
+            18 => return format!("key '{}'", self.press_key_of_view()),
+            _ => {
+                for _ in 0..1 + self.below(3) {
+                    self.display.keys(&[u32::from('b')]);
+                }
+                "another brush"
+            }
+        };
+        name.to_owned()
+    }
+
+    fn turn_wheel(&mut self) {
+        let at = self.within(CANVAS_AREA).map(|at| at as i16);
+        let (notches, button) = (1 + self.below(3), 4 + self.below(2) as u8);
+        for _ in 0..notches {
+            self.display.click(button, at);
+        }
+    }
+
+    fn move_canvas(&mut self) {
+        let way = self.on_canvas();
+        let keys: &[u32] = [&[][..], &[SHIFT], &[0xffe9]][self.below(3) as usize];
+        self.display.hold(keys);
+        self.drag(2, &way[..way.len().min(12)]);
+        self.display.let_go(keys);
+    }
+
+    fn drag_with_a_key(&mut self) {
+        let way = self.on_canvas();
+        let letter = ['s', 'z'][self.below(2) as usize];
+        self.drag_with(&[u32::from(letter)], &way[..way.len().min(8)]);
+    }
+
+    /// From the panels over the canvas: nobody paints; over them from the canvas: one stroke.
+    fn drag_out_of_panels(&mut self) {
+        self.display.keys(&[TAB]);
+        self.settle();
+        let mut way = self.way([450.0, 60.0, 700.0, 700.0]);
+        way.insert(0, IN_PANELS[usize::from(self.mirrored)]);
+        self.drag(1, &way);
+        self.display.keys(&[ESCAPE]);
+        self.display.keys(&[TAB]);
+    }
+
+    /// Presses a key that changes view or brush; its letter.
+    fn press_key_of_view(&mut self) -> &'static str {
+        let keys = [
+            "[", "]", "b", ",", ".", "t", "-", "=", "m", "0", "1", " ", "[", "]", "b",
+        ];
+        let word = keys[self.below(keys.len() as u32) as usize];
+        let shown: Vec<u32> = word.chars().map(u32::from).collect();
+        self.mirrored ^= word == "m";
+        self.display.keys(&shown);
+        word
+    }
+
+    /// Gives a command by its keys, by its number among the [gestures](Self::gesture).
+    fn command(&mut self, kind: u32) -> (String, Effect) {
+        let (name, keys) = match kind {
+            20 => ("undo".to_owned(), vec![CONTROL, u32::from('z')]),
+            21 => ("redo".to_owned(), vec![CONTROL, SHIFT, u32::from('z')]),
+            22 => {
+                let letter = ['d', 'c', 'i', 'i'][self.below(4) as usize];
+                (format!("key '{letter}'"), vec![u32::from(letter)])
+            }
+            _ => ("scrape".to_owned(), vec![BACKSPACE]),
+        };
+        self.display.keys(&keys);
+        (name, Effect::Command)
     }
 
     /// Checks what a gesture painted: no gap in any stroke, and how many strokes there were.

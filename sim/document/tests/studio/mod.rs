@@ -129,7 +129,15 @@ fn part(dice: &mut Dice) -> Region {
     }
 }
 
-/// The painter.
+fn fill(mixture: Mixture) -> Command {
+    Command::from(Fill {
+        paint: FillPaint::Mixture { mixture },
+        thickness: FilmThickness::new(2e-5).expect("in range"),
+        surface: CANVAS,
+    })
+}
+
+/// A painter whose next action depends on the seed alone.
 #[derive(Clone)]
 pub struct Painter {
     pub dice: Dice,
@@ -189,10 +197,8 @@ impl Painter {
 
     pub fn next(&mut self) -> Act {
         let b = self.dice.below(2) as usize;
-        let brush = BRUSHES[b].to_owned();
+        let brush = BrushName::new(BRUSHES[b]).expect("valid");
         let mixture = mixture(MIXTURES[self.dice.below(3) as usize]);
-        let named = |dice: &mut Dice| ["one", "two", "three"][dice.below(3) as usize].to_owned();
-        let maybe = |dice: &mut Dice, brush: &str| (dice.below(3) == 0).then(|| brush.to_owned());
         let command = match self.dice.below(60) {
             0..15 => {
                 let new = self.dice.below(2) == 0;
@@ -203,116 +209,158 @@ impl Painter {
             15..18 => Command::from(Load {
                 mixture,
                 beside: None,
-                brush: BrushName::new(brush).expect("valid"),
+                brush,
             }),
-            18 => Command::from(Clean {
-                brush: BrushName::new(brush).expect("valid"),
-            }),
+            18 => Command::from(Clean { brush }),
             19..21 => Command::from(Dry {
-                share: Share::new([1.0, 0.4][self.dice.below(2) as usize]).expect("in range"),
+                share: self.share(),
                 ..Dry::whole(CANVAS)
             }),
-            21 => Command::from(Opacity {
-                layer: LayerRef::Number {
-                    number: 1 + self.dice.below(3) as u32,
-                },
-                opacity: OpacityFactor::new(0.5).expect("in range"),
-            }),
-            22 => Command::from(Fill {
-                paint: FillPaint::Mixture { mixture },
-                thickness: FilmThickness::new(2e-5).expect("in range"),
-                surface: CANVAS,
-            }),
-            23 => Command::from(
-                Ground::named(
-                    CANVAS,
-                    ["gesso", "grey", "black"][self.dice.below(3) as usize],
-                )
-                .expect("valid"),
-            ),
-            24 => Command::from(Tooth {
-                tooth: MaterialName::new(["linen", "paper"][self.dice.below(2) as usize])
-                    .expect("valid"),
-                seed: self.dice.below(3),
-                surface: CANVAS,
-            }),
-            25..27 => Command::from(Keep {
-                name: VersionName::new(named(&mut self.dice)).expect("valid"),
-            }),
-            27 => Command::from(ReturnTo {
-                name: VersionName::new(named(&mut self.dice)).expect("valid"),
-            }),
-            28 => Command::from(Branch {
-                from: VersionName::new(named(&mut self.dice)).expect("valid"),
-                name: VersionName::new(named(&mut self.dice)).expect("valid"),
-            }),
-            29 => Command::from(Forget {
-                name: VersionName::new(named(&mut self.dice)).expect("valid"),
-            }),
+            21 => self.thin_layer(),
+            22 => fill(mixture),
+            23 => self.named_ground(),
+            24 => self.tooth(),
+            kind @ 25..30 => self.version(kind),
             30..35 => Command::from(Undo {
-                brush: maybe(&mut self.dice, &brush).map(|it| BrushName::new(it).expect("valid")),
+                brush: self.sometimes(brush),
             }),
             35..39 => Command::from(Redo {
-                brush: maybe(&mut self.dice, &brush).map(|it| BrushName::new(it).expect("valid")),
+                brush: self.sometimes(brush),
             }),
-            39 => return Act::Redefine(b, [31, 48][self.dice.below(2) as usize]),
-            40..46 => return Act::Ticks([7, 45, 150, 400][self.dice.below(4) as usize]),
-            46..49 => Command::from(Dry {
-                over: Some(
-                    Ticks::new([20, 200, 2000][self.dice.below(3) as usize]).expect("in range"),
-                ),
-                region: self.region(),
-                ..Dry::whole(CANVAS)
-            }),
+            39 => return Act::Redefine(b, self.one_of([31, 48])),
+            40..46 => return Act::Ticks(self.one_of([7, 45, 150, 400])),
+            46..49 => self.dry_over_time(),
             49 => Command::from(StopDrying { surface: CANVAS }),
-            50..52 => Command::from(Dry {
-                share: Share::new([1.0, 0.4][self.dice.below(2) as usize]).expect("in range"),
-                layer: LayerName::new("part").ok(),
-                region: Some(part(&mut self.dice)),
-                ..Dry::whole(CANVAS)
-            }),
-            52..54 => Command::from(Wet {
-                // 0 means all.
-                layers: Some(self.dice.below(3) as u32).filter(|count| *count > 0),
+            50..52 => self.dry_part(),
+            52..54 => self.wet(),
+            54 => self.change_part(),
+            55 => Command::from(Scrape {
                 region: self.region(),
-                surface: CANVAS,
+                surface: self.one_of([CANVAS, PALETTE]),
             }),
-            57..59 => {
-                let palette = PaintingSetup::default().scene().surfaces.remove(1);
-                let mixtures = MIXTURES.map(self::mixture);
-                let left_out = self.dice.below(3) as usize;
-                let mut wells = wells_of(&mixtures[left_out..], palette.cells, palette.cell_m);
-                if self.dice.below(2) == 0 {
-                    wells = mirrored(&wells, size_m(&palette));
-                }
-                Command::from(Wells::new(PALETTE, wells).expect("valid"))
-            }
+            57..59 => self.wells(),
             59 => Command::from(GoTo {
                 step: self.dice.below(40),
             }),
-            55 => Command::from(Scrape {
-                region: self.region(),
-                surface: [CANVAS, PALETTE][self.dice.below(2) as usize],
-            }),
-            54 => match self.dice.below(2) {
-                0 => Command::from(Opacity {
-                    layer: "part".parse().expect("valid"),
-                    opacity: OpacityFactor::new(0.5).expect("in range"),
-                }),
-                _ => Command::from(NameLayer {
-                    layer: 1,
-                    name: LayerName::new("renamed").expect("valid"),
-                }),
-            },
-            _ => Command::from(
-                Ground::spectrum(
-                    CANVAS,
-                    &format!("400,0.{}\n700,0.5", 1 + self.dice.below(3)),
-                )
-                .expect("valid"),
-            ),
+            _ => self.spectral_ground(),
         };
         Act::Command(command)
+    }
+
+    fn one_of<T: Copy, const N: usize>(&mut self, all: [T; N]) -> T {
+        all[self.dice.below(N as u64) as usize]
+    }
+
+    /// The brush, once in three times.
+    fn sometimes(&mut self, brush: BrushName) -> Option<BrushName> {
+        (self.dice.below(3) == 0).then_some(brush)
+    }
+
+    fn share(&mut self) -> Share {
+        Share::new(self.one_of([1.0, 0.4])).expect("in range")
+    }
+
+    fn version_name(&mut self) -> VersionName {
+        VersionName::new(self.one_of(["one", "two", "three"])).expect("valid")
+    }
+
+    /// Halves the opacity of a layer, which may not be there.
+    fn thin_layer(&mut self) -> Command {
+        Command::from(Opacity {
+            layer: LayerRef::Number {
+                number: 1 + self.dice.below(3) as u32,
+            },
+            opacity: OpacityFactor::new(0.5).expect("in range"),
+        })
+    }
+
+    /// Changes the layer that [a part of the canvas](Self::dry_part) became.
+    fn change_part(&mut self) -> Command {
+        match self.dice.below(2) {
+            0 => Command::from(Opacity {
+                layer: "part".parse().expect("valid"),
+                opacity: OpacityFactor::new(0.5).expect("in range"),
+            }),
+            _ => Command::from(NameLayer {
+                layer: 1,
+                name: LayerName::new("renamed").expect("valid"),
+            }),
+        }
+    }
+
+    fn named_ground(&mut self) -> Command {
+        let name = self.one_of(["gesso", "grey", "black"]);
+        Command::from(Ground::named(CANVAS, name).expect("valid"))
+    }
+
+    fn spectral_ground(&mut self) -> Command {
+        let spectrum = format!("400,0.{}\n700,0.5", 1 + self.dice.below(3));
+        Command::from(Ground::spectrum(CANVAS, &spectrum).expect("valid"))
+    }
+
+    fn tooth(&mut self) -> Command {
+        Command::from(Tooth {
+            tooth: MaterialName::new(self.one_of(["linen", "paper"])).expect("valid"),
+            seed: self.dice.below(3),
+            surface: CANVAS,
+        })
+    }
+
+    /// The edit of versions with this number among the [acts](Self::next).
+    fn version(&mut self, kind: u64) -> Command {
+        match kind {
+            25..27 => Command::from(Keep {
+                name: self.version_name(),
+            }),
+            27 => Command::from(ReturnTo {
+                name: self.version_name(),
+            }),
+            28 => Command::from(Branch {
+                from: self.version_name(),
+                name: self.version_name(),
+            }),
+            _ => Command::from(Forget {
+                name: self.version_name(),
+            }),
+        }
+    }
+
+    fn dry_over_time(&mut self) -> Command {
+        Command::from(Dry {
+            over: Some(Ticks::new(self.one_of([20, 200, 2000])).expect("in range")),
+            region: self.region(),
+            ..Dry::whole(CANVAS)
+        })
+    }
+
+    fn dry_part(&mut self) -> Command {
+        Command::from(Dry {
+            share: self.share(),
+            layer: LayerName::new("part").ok(),
+            region: Some(part(&mut self.dice)),
+            ..Dry::whole(CANVAS)
+        })
+    }
+
+    fn wet(&mut self) -> Command {
+        Command::from(Wet {
+            // 0 means all.
+            layers: Some(self.dice.below(3) as u32).filter(|count| *count > 0),
+            region: self.region(),
+            surface: CANVAS,
+        })
+    }
+
+    /// Other wells, sometimes mirrored.
+    fn wells(&mut self) -> Command {
+        let palette = PaintingSetup::default().scene().surfaces.remove(1);
+        let mixtures = MIXTURES.map(mixture);
+        let left_out = self.dice.below(3) as usize;
+        let mut wells = wells_of(&mixtures[left_out..], palette.cells, palette.cell_m);
+        if self.dice.below(2) == 0 {
+            wells = mirrored(&wells, size_m(&palette));
+        }
+        Command::from(Wells::new(PALETTE, wells).expect("valid"))
     }
 
     /// Does an action; an impossible one is refused, as for any painter.

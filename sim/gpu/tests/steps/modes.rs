@@ -47,6 +47,113 @@ fn after(counts: &Counts, report: &StepReport) -> Counts {
     })
 }
 
+/// A way to use a brush.
+struct Mode {
+    name: &'static str,
+    handling: Handling,
+    thinner: Option<usize>,
+    lasting: bool,
+}
+
+impl Mode {
+    fn of(name: &'static str, handling: Handling) -> Self {
+        Self {
+            name,
+            handling,
+            thinner: None,
+            lasting: false,
+        }
+    }
+
+    fn transferring(name: &'static str, transfer: Transfer) -> Self {
+        let handling = Handling {
+            transfer,
+            ..Handling::default()
+        };
+        Self::of(name, handling)
+    }
+
+    /// This mode in a scene.
+    fn set(&self, mut scene: Scene) -> Scene {
+        (scene.handling, scene.thinner) = (self.handling, self.thinner);
+        scene
+    }
+}
+
+fn modes() -> [Mode; 9] {
+    let painting = Handling::default();
+    let unpushed = Handling {
+        push: false,
+        ..painting
+    };
+    let thin = Handling {
+        most: 150_000.5,
+        ..painting
+    };
+    [
+        Mode::of("paint", painting),
+        Mode {
+            thinner: Some(4),
+            ..Mode::of("thinned", painting)
+        },
+        Mode::of("unpushed", unpushed),
+        Mode::of("thin", thin),
+        Mode {
+            lasting: true,
+            ..Mode::of("lasting", painting)
+        },
+        Mode::transferring("sponge", Transfer::Sponge),
+        Mode::transferring("marker", Transfer::Marker { flow: 0.002 }),
+        Mode::transferring("sampler", Transfer::Sampler),
+        Mode::transferring("vacuum", Transfer::Vacuum),
+    ]
+}
+
+/// The totals of a step on the device agree with those of the processor.
+fn check_report(got: &StepReport, want: &StepReport, beyond: f64, what: &str) {
+    let cells = [got, want].map(|report| report.footprint_cells);
+    let few = (beyond * cells[1] as f64) as u64;
+    assert!(cells[0].abs_diff(cells[1]) <= few, "{what}: {cells:?}");
+    for [got, want] in [[got.wet, want.wet], [got.thinner, want.thinner]] {
+        let off = (got as f64 / want.max(1) as f64 - 1.0).abs();
+        assert!(want == 0 || off < 0.01, "{what}: {got} {want}");
+    }
+}
+
+/// Differences of two backends in the steps of a mode.
+#[derive(Default)]
+struct Differences {
+    /// Of counts on cells, and of those on the brush.
+    off: [Vec<f32>; 2],
+    /// Greatest change of a count by a step.
+    did: f32,
+}
+
+impl Differences {
+    fn add(&mut self, before: &Scene, on_cpu: &Scene, on_gpu: &Scene) {
+        for (all, own) in self.off.iter_mut().zip(apart(on_cpu, on_gpu)) {
+            all.extend(own);
+        }
+        let changes = apart(before, on_gpu);
+        self.did = changes.into_iter().flatten().fold(self.did, f32::max);
+    }
+
+    fn check(&self, name: &str, near: Near) {
+        let mut alike = true;
+        for (off, quanta) in self.off.iter().zip(near.quanta) {
+            let worst = off.iter().copied().fold(0.0, f32::max);
+            let beyond = off.iter().filter(|off| **off > quanta).count();
+            println!(
+                "{name}: {beyond} of {} counts off, by {worst} of {}",
+                off.len(),
+                self.did
+            );
+            alike &= beyond as f64 <= near.beyond * off.len() as f64;
+        }
+        assert!(alike && self.did > 1000.0, "{name}");
+    }
+}
+
 /// In these scenes the device agrees with the processor in every mode.
 pub(crate) fn agree(
     gpu: &mut dyn PaintModel,
@@ -54,83 +161,20 @@ pub(crate) fn agree(
     near: Near,
     scene_of: fn(u64) -> Scene,
 ) {
-    let painting = Handling::default();
-    let with = |transfer| Handling {
-        transfer,
-        ..painting
-    };
-    for (name, handling, thinner) in [
-        ("paint", painting, None),
-        ("thinned", painting, Some(4)),
-        (
-            "unpushed",
-            Handling {
-                push: false,
-                ..painting
-            },
-            None,
-        ),
-        (
-            "thin",
-            Handling {
-                most: 150_000.5,
-                ..painting
-            },
-            None,
-        ),
-        ("lasting", painting, None),
-        ("sponge", with(Transfer::Sponge), None),
-        ("marker", with(Transfer::Marker { flow: 0.002 }), None),
-        ("sampler", with(Transfer::Sampler), None),
-        ("vacuum", with(Transfer::Vacuum), None),
-    ] {
-        let lasting = name == "lasting";
-        let (mut off, mut did) = ([const { Vec::new() }; 2], 0.0f32);
+    for mode in modes() {
+        let mut differences = Differences::default();
         for seed in 0..4 {
-            let scene = || {
-                let mut scene = scene_of(seed);
-                (scene.handling, scene.thinner) = (handling, thinner);
-                scene
-            };
+            let what = format!("{} {seed}", mode.name);
+            let scene = || mode.set(scene_of(seed));
             let (mut on_cpu, mut on_gpu) = (scene(), scene());
             let counts = on_gpu.counts();
-            let want = step(cpu, &mut on_cpu, lasting);
-            let got = step(gpu, &mut on_gpu, lasting);
-            let cells = [got, want].map(|report| report.footprint_cells);
-            let few = (near.beyond * cells[1] as f64) as u64;
-            assert!(
-                cells[0].abs_diff(cells[1]) <= few,
-                "{name} {seed}: {cells:?}"
-            );
-            assert_eq!(on_gpu.counts(), after(&counts, &got), "{name} {seed}");
+            let want = step(cpu, &mut on_cpu, mode.lasting);
+            let got = step(gpu, &mut on_gpu, mode.lasting);
+            check_report(&got, &want, near.beyond, &what);
+            assert_eq!(on_gpu.counts(), after(&counts, &got), "{what}");
             lying(&on_gpu.window);
-            let share = |got: u64, want: u64| (got as f64 / want.max(1) as f64 - 1.0).abs();
-            assert!(
-                want.wet == 0 || share(got.wet, want.wet) < 0.01,
-                "{got:?} {want:?}"
-            );
-            assert!(
-                want.thinner == 0 || share(got.thinner, want.thinner) < 0.01,
-                "{got:?} {want:?}"
-            );
-            for (all, own) in off.iter_mut().zip(apart(&on_cpu, &on_gpu)) {
-                all.extend(own);
-            }
-            did = apart(&scene(), &on_gpu)
-                .into_iter()
-                .flatten()
-                .fold(did, f32::max);
+            differences.add(&scene(), &on_cpu, &on_gpu);
         }
-        let mut alike = true;
-        for (off, quanta) in off.iter().zip(near.quanta) {
-            let worst = off.iter().copied().fold(0.0, f32::max);
-            let beyond = off.iter().filter(|off| **off > quanta).count();
-            println!(
-                "{name}: {beyond} of {} counts off, by {worst} of {did}",
-                off.len()
-            );
-            alike &= beyond as f64 <= near.beyond * off.len() as f64;
-        }
-        assert!(alike && did > 1000.0, "{name}");
+        differences.check(mode.name, near);
     }
 }

@@ -38,7 +38,7 @@ pub struct Met {
 /// The brush over the cells below it.
 #[derive(Debug, Default)]
 pub struct Raster {
-    /// The head.
+    /// The head, drawn over the cells below it.
     pub drawn: Drawn,
     rate: Vec<f32>,
     way: Vec<f32>,
@@ -80,7 +80,54 @@ struct Place<'a> {
     dither: Dither,
 }
 
-impl Share<'_> {
+impl Met {
+    /// Totals of what the cores blended in an area of the window.
+    fn of(under: Area, shares: &[Share<'_>]) -> Self {
+        let mut met = Self {
+            under: under.cells() as u64,
+            ..Self::default()
+        };
+        for share in shares {
+            let [cells, wet, thinner] = share.sums.map(|sum| sum as u64);
+            met.cells += cells;
+            met.wet += wet;
+            met.thinner += thinner;
+        }
+        let rows = shares.iter().filter_map(|share| share.met);
+        let rows = rows.reduce(|[first, _], [_, last]| [first, last]);
+        if let Some([first, last]) = rows {
+            met.reached = Area {
+                from: [under.from[0], first],
+                size: [under.size[0], last + 1 - first],
+            };
+        }
+        met
+    }
+}
+
+impl<'a> Share<'a> {
+    /// Shares of the cores in an area of the raster, of which the planes of brush and canvas hold the rows.
+    fn of_cores(
+        area: Area,
+        strides: [usize; 2],
+        [mut brush, mut canvas]: [Vec<&'a mut [f32]>; 2],
+        touching: &'a mut Vec<Touching>,
+    ) -> Vec<Self> {
+        let count = shares_of(area.cells());
+        let buffers = touching.len().max(count);
+        touching.resize_with(buffers, Touching::default);
+        let parts = area.parts(count).zip(touching);
+        let shares = parts.map(|(part, touching)| Self {
+            rows: part.from[1]..part.from[1] + part.size[1],
+            touching,
+            brush: split(&mut brush, part.size[1] * strides[0]),
+            canvas: split(&mut canvas, part.size[1] * strides[1]),
+            met: None,
+            sums: [0.0; 3],
+        });
+        shares.collect()
+    }
+
     fn blend(&mut self, place: &Place<'_>) {
         let columns = place.under.size[0];
         self.touching.begin(columns);
@@ -226,6 +273,7 @@ impl Raster {
             let from = drawn.origin[i] - origin[i] + shift[i];
             (under.from[i] as i64 - from) as usize
         });
+        let strides = [drawn.stride, width];
         let films = self.films.in_use();
         for film in &*films {
             window.plane_mut(film.slot);
@@ -236,32 +284,16 @@ impl Raster {
         let ([base, ride], planes) = window.ground_and_planes_mut();
         let mut slots = films.iter().map(|film| film.slot).peekable();
         let planes = planes.filter(|(slot, _)| slots.next_if_eq(slot).is_some());
-        let mut canvas: Vec<&mut [f32]> = planes
-            .map(|(_, plane)| &mut plane[under.from[1] * width..])
-            .collect();
-        let mut brush: Vec<&mut [f32]> = films
-            .iter_mut()
-            .map(|film| &mut film.plane[on[1] * drawn.stride..])
-            .collect();
-        let count = shares_of(under.cells());
-        let touching = self.touching.len().max(count);
-        self.touching.resize_with(touching, Touching::default);
-        let parts = Area {
+        let canvas = planes.map(|(_, plane)| &mut plane[under.from[1] * width..]);
+        let canvas = canvas.collect();
+        let brush = films.iter_mut();
+        let brush = brush.map(|film| &mut film.plane[on[1] * drawn.stride..]);
+        let area = Area {
             from: on,
             size: under.size,
-        }
-        .parts(count);
-        let mut shares: Vec<Share<'_>> = parts
-            .zip(&mut self.touching)
-            .map(|(part, touching)| Share {
-                rows: part.from[1]..part.from[1] + part.size[1],
-                touching,
-                brush: split(&mut brush, part.size[1] * drawn.stride),
-                canvas: split(&mut canvas, part.size[1] * width),
-                met: None,
-                sums: [0.0; 3],
-            })
-            .collect();
+        };
+        let planes = [brush.collect(), canvas];
+        let mut shares = Share::of_cores(area, strides, planes, &mut self.touching);
         let place = Place {
             over: [
                 &drawn.cover,
@@ -271,7 +303,7 @@ impl Raster {
                 &drawn.clearance,
             ],
             ground: [base, ride],
-            strides: [drawn.stride, width],
+            strides,
             on,
             under,
             origin,
@@ -282,25 +314,7 @@ impl Raster {
             dither,
         };
         each(&mut shares, |share| share.blend(&place));
-        let mut met = Met {
-            under: under.cells() as u64,
-            ..Met::default()
-        };
-        for share in &shares {
-            let [cells, wet, thinner] = share.sums.map(|sum| sum as u64);
-            met.cells += cells;
-            met.wet += wet;
-            met.thinner += thinner;
-        }
-        let rows = shares.iter().filter_map(|share| share.met);
-        let rows = rows.reduce(|[first, _], [_, last]| [first, last]);
-        if let Some([first, last]) = rows {
-            met.reached = Area {
-                from: [under.from[0], first],
-                size: [under.size[0], last + 1 - first],
-            };
-        }
-        met
+        Met::of(under, &shares)
     }
 
     /// Returns the cells' quanta to their texels. By slot, the gain of the brush.

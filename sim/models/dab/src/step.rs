@@ -166,18 +166,12 @@ impl Dab {
         way: Way,
         stroke: &mut Stroke,
     ) {
-        let (load, traits) = (&*step.load, &step.traits);
+        let traits = &step.traits;
         // The pressed head may lie below its solved height by the depth of the ride.
         let low = stroke.top + traits.sink * sweep.to.press + step.window.ride_below();
-        let film = load.thickest() as f32 * traits.film_cells_per_quantum;
-        let Some((from, to)) = low_bounds(step.head, sweep.to, traits, low + film) else {
+        let Some((from, size)) = low_part(step, sweep, low) else {
             return;
         };
-        let from = [0, 1].map(|i| from[i].max(step.bounds.0[i]));
-        let size = [0, 1].map(|i| (to[i].min(step.bounds.1[i]) - from[i]).max(0) as usize);
-        if size.contains(&0) {
-            return;
-        }
         let mut part = Step {
             window: &mut *step.window,
             head: step.head,
@@ -185,48 +179,27 @@ impl Dab {
             load: &mut *step.load,
             ..*step
         };
-        let raster = &mut self.raster;
-        raster.drawn.draw(&part, from, size, low);
-        if raster.drawn.is_empty() {
+        self.raster.drawn.draw(&part, from, size, low);
+        if self.raster.drawn.is_empty() {
             return;
         }
         let sponge = part.handling.transfer == Transfer::Sponge;
         let counted = sponge || part.lasting;
-        let within = part.window.area(part.bounds.0, part.bounds.1);
-        let origin = part.window.origin();
-        let under = places
-            .iter()
-            .map(|place| raster.under(origin, within, *place));
-        let under = under.reduce(joined).unwrap_or_default();
+        let under = self.under(&part, places);
         let before = if counted {
             lying(&part, under)
         } else {
             [0; SLOTS]
         };
-        raster.lend(part.load, &part.traits, &stroke.slots, way);
-        let seed = part.load.seed();
-        let mut touched = false;
-        for place in places {
-            let dither = Dither::new(seed, stroke.number);
-            stroke.number = stroke.number.wrapping_add(1);
-            let met = raster.blend(&mut part, *place, dither);
-            self.blended += met.under;
-            if met.cells == 0 {
-                continue;
-            }
-            touched = true;
-            stroke.reached = joined(stroke.reached, met.reached);
-            stroke.report.footprint_cells += met.cells;
-            stroke.report.wet += met.wet;
-            stroke.report.thinner += met.thinner;
-        }
-        if !touched {
+        let slots = &stroke.slots;
+        self.raster.lend(part.load, &part.traits, slots, way);
+        if !self.blend_at(&mut part, places, stroke) {
             return;
         }
         let mut from_nowhere = [0; SLOTS];
         if !sponge {
-            from_nowhere = raster.give_back(part.load);
-            for strip in raster.strips() {
+            from_nowhere = self.raster.give_back(part.load);
+            for strip in self.raster.strips() {
                 stroke.strips[strip] = true;
             }
         }
@@ -237,6 +210,45 @@ impl Dab {
             }
         }
     }
+
+    /// The cells of the window that the raster covers at any of some places.
+    fn under(&self, step: &Step<'_>, places: &[[i64; 2]]) -> Area {
+        let within = step.window.area(step.bounds.0, step.bounds.1);
+        let origin = step.window.origin();
+        let under = places.iter();
+        let under = under.map(|place| self.raster.under(origin, within, *place));
+        under.reduce(joined).unwrap_or_default()
+    }
+
+    /// Blends the drawn head with the canvas at some places; true if it touched anything.
+    fn blend_at(&mut self, step: &mut Step<'_>, places: &[[i64; 2]], stroke: &mut Stroke) -> bool {
+        let seed = step.load.seed();
+        let mut touched = false;
+        for place in places {
+            let dither = Dither::new(seed, stroke.number);
+            stroke.number = stroke.number.wrapping_add(1);
+            let met = self.raster.blend(step, *place, dither);
+            self.blended += met.under;
+            if met.cells == 0 {
+                continue;
+            }
+            touched = true;
+            stroke.reached = joined(stroke.reached, met.reached);
+            stroke.report.footprint_cells += met.cells;
+            stroke.report.wet += met.wet;
+            stroke.report.thinner += met.thinner;
+        }
+        touched
+    }
+}
+
+/// Corner and size of the step's cells over which the head, with its film, lies below a height.
+fn low_part(step: &Step<'_>, sweep: Sweep<'_>, low: f32) -> Option<([i64; 2], [usize; 2])> {
+    let film = step.load.thickest() as f32 * step.traits.film_cells_per_quantum;
+    let (from, to) = low_bounds(step.head, sweep.to, &step.traits, low + film)?;
+    let from = [0, 1].map(|i| from[i].max(step.bounds.0[i]));
+    let size = [0, 1].map(|i| (to[i].min(step.bounds.1[i]) - from[i]).max(0) as usize);
+    (!size.contains(&0)).then_some((from, size))
 }
 
 /// The paints on the brush's surface or on an area of the canvas.

@@ -10,18 +10,18 @@ use crate::spectrum::{SAMPLES, Spectrum};
 /// Scattering of titanium white, per metre: over black 25 µm reflect .79, 100 µm .94.
 pub const WHITE_S_PER_M: f64 = 150_000.0;
 
-/// A paint.
+/// A measured paint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Paint {
-    /// Its name.
+    /// Name by which mixtures are written.
     pub name: String,
     /// Colour index of its pigments.
     pub colour_index: String,
     /// Source of the measurement.
     pub source: String,
-    /// Absorption, per metre.
+    /// Absorption by wavelength, per metre.
     pub k: Spectrum,
-    /// Scattering, per metre.
+    /// Scattering by wavelength, per metre.
     pub s: Spectrum,
 }
 
@@ -52,7 +52,7 @@ pub enum PaintError {
     /// No such paint; the nearest name is proposed.
     #[error("there is no paint called '{name}'{}", meant(.nearest.as_deref()))]
     Unknown {
-        /// The name.
+        /// The name as it was given.
         name: String,
         /// The nearest name, if one is near.
         nearest: Option<String>,
@@ -65,7 +65,7 @@ pub enum PaintError {
     File {
         /// The line, from 1.
         line: usize,
-        /// The defect.
+        /// Defect of this line.
         fault: FileFault,
     },
 }
@@ -82,19 +82,19 @@ pub enum FileFault {
     /// A heading that is not the wavelength of its column.
     #[error("column {column}: wavelength '{cell}' instead of {nm}")]
     Wavelength {
-        /// The column.
+        /// The column, from 1.
         column: usize,
-        /// The heading.
+        /// Heading of the column.
         cell: String,
-        /// The wavelength, nm.
+        /// Wavelength that belongs to the column, nm.
         nm: f64,
     },
     /// K or S out of range.
     #[error("column {column}: {} is not 0 to {COEFFICIENT_MAX:.0}", shown(.cell))]
     Value {
-        /// The column.
+        /// The column, from 1.
         column: usize,
-        /// The cell.
+        /// Text of the cell.
         cell: String,
     },
     /// A quantity that is neither K nor S.
@@ -106,15 +106,15 @@ pub enum FileFault {
     /// A second row of K or of S.
     #[error("a second row of {quantity} of '{paint}'")]
     Twice {
-        /// K or S.
+        /// The quantity, K or S.
         quantity: String,
-        /// The paint.
+        /// Name of the paint.
         paint: String,
     },
     /// The paint without a row of K or of S.
     #[error("'{0}' lacks its row of K or of S")]
     Half(String),
-    /// No paint.
+    /// A file without a paint.
     #[error("the file holds no paint")]
     Empty,
 }
@@ -131,16 +131,16 @@ const NAME_MAX: usize = maulstick_types::limits::PAINT_NAME_MAX;
 /// A name that no paint may have.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PaintNameError {
-    /// Nothing but blanks.
+    /// A name of blanks alone.
     #[error("a paint has no name")]
     Blank,
-    /// Too many bytes.
+    /// More bytes than messages can carry.
     #[error("a paint's name has {0} bytes, more than {NAME_MAX}")]
     Long(usize),
     /// A character with which mixtures are written, or a control character.
     #[error("the name '{0}' has one of = , \" in it, with which mixtures are written")]
     Character(String),
-    /// The thinner's.
+    /// The name of the thinner.
     #[error("'{THINNER}' is the medium that every palette has; choose another name for the paint")]
     Thinner,
 }
@@ -177,41 +177,58 @@ const NAMED: usize = 4;
 /// Columns of a row.
 const COLUMNS: usize = NAMED + SAMPLES;
 
+/// A fault in a row of a paint file.
+fn fault_of(row: Row<'_>, fault: FileFault) -> PaintError {
+    let line = row.line();
+    PaintError::File { line, fault }
+}
+
 /// The header names the wavelengths of the samples.
 fn check_header(row: Row<'_>) -> Result<(), PaintError> {
     for column in NAMED..row.len() {
         let nm = crate::spectrum::wavelength(column - NAMED);
         if row.number(column)? != nm {
-            return Err(PaintError::File {
-                line: row.line(),
-                fault: FileFault::Wavelength {
-                    column: column + 1,
-                    cell: row.cell(column).to_owned(),
-                    nm,
-                },
-            });
+            let fault = FileFault::Wavelength {
+                column: column + 1,
+                cell: row.cell(column).to_owned(),
+                nm,
+            };
+            return Err(fault_of(row, fault));
         }
     }
     Ok(())
 }
 
+/// Quantity of a row.
+#[derive(Clone, Copy)]
+enum Quantity {
+    K,
+    S,
+}
+
 /// K or S of a row, per metre.
-fn spectrum(row: Row<'_>) -> Result<Spectrum, PaintError> {
+fn coefficients(row: Row<'_>) -> Result<(Quantity, Spectrum), PaintError> {
+    if row.len() != COLUMNS {
+        return Err(fault_of(row, FileFault::Columns(row.len())));
+    }
     let mut values = [0.0; SAMPLES];
     for (column, value) in (NAMED..).zip(&mut values) {
         let number = row.number(column)?;
         if !(0.0..=COEFFICIENT_MAX).contains(&number) {
-            return Err(PaintError::File {
-                line: row.line(),
-                fault: FileFault::Value {
-                    column: column + 1,
-                    cell: row.cell(column).to_owned(),
-                },
-            });
+            let fault = FileFault::Value {
+                column: column + 1,
+                cell: row.cell(column).to_owned(),
+            };
+            return Err(fault_of(row, fault));
         }
         *value = number * WHITE_S_PER_M;
     }
-    Ok(Spectrum(values))
+    let quantity = match row.cell(3) {
+        "K" => Quantity::K,
+        "S" => Quantity::S,
+        other => return Err(fault_of(row, FileFault::Quantity(other.to_owned()))),
+    };
+    Ok((quantity, Spectrum(values)))
 }
 
 /// The paints to choose from.
@@ -241,35 +258,24 @@ impl PaintLibrary {
     /// # Errors
     /// [`PaintError::File`] with the line.
     pub fn parse(text: &str) -> Result<Self, PaintError> {
+        let table = Table::parse(text, HeadingLine::Row)?;
         let mut found: BTreeMap<String, [Option<Spectrum>; 2]> = BTreeMap::new();
         let mut order: Vec<(String, String, String)> = Vec::new();
-        let table = Table::parse(text, HeadingLine::Row)?;
         for row in table.rows() {
-            let line = row.line();
-            let fault = |fault| PaintError::File { line, fault };
             if row.cell(0).eq_ignore_ascii_case("paint") {
                 check_header(row)?;
                 continue;
             }
-            if row.len() != COLUMNS {
-                return Err(fault(FileFault::Columns(row.len())));
-            }
-            let values = spectrum(row)?;
-            let [name, colour_index, source, quantity] =
-                [0, 1, 2, 3].map(|column| row.cell(column));
-            let place = match quantity {
-                "K" => 0,
-                "S" => 1,
-                other => return Err(fault(FileFault::Quantity(other.to_owned()))),
-            };
+            let (quantity, values) = coefficients(row)?;
+            let [name, colour_index, source] = [0, 1, 2].map(|column| row.cell(column));
             if !found.contains_key(name) {
-                check_paint_name(name).map_err(|error| fault(error.into()))?;
+                check_paint_name(name).map_err(|error| fault_of(row, error.into()))?;
                 order.push((name.into(), colour_index.into(), source.into()));
             }
             let rows = found.entry(name.to_owned()).or_default();
-            if rows[place].replace(values).is_some() {
-                let (quantity, paint) = (quantity.to_owned(), name.to_owned());
-                return Err(fault(FileFault::Twice { quantity, paint }));
+            if rows[quantity as usize].replace(values).is_some() {
+                let (quantity, paint) = (row.cell(3).to_owned(), name.to_owned());
+                return Err(fault_of(row, FileFault::Twice { quantity, paint }));
             }
         }
         let mut paints = Vec::new();
@@ -314,7 +320,7 @@ impl PaintLibrary {
         self.hash
     }
 
-    /// The file.
+    /// Text of the file.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text

@@ -44,6 +44,53 @@ fn apart(drawn: &Drawn, probe: &Probe, travel: impl Fn(&Over) -> f32) -> (usize,
     (probe.over.len() + covered - 2 * alike, covered)
 }
 
+/// Takes the paint off brush and canvas: only low parts of the head are drawn there.
+fn strip_bare(scene: &mut Scene) {
+    scene.load.take_all();
+    let planes = scene.window.planes_mut();
+    planes.for_each(|(_, plane)| plane.fill(0.0));
+}
+
+/// Makes the step one of less than a cell in which the head keeps its shape: one that bends is drawn anew in each part.
+fn move_rigidly(scene: &mut Scene) {
+    let (from, to) = (&mut scene.from, &scene.to);
+    from.z.clone_from(&to.z);
+    for (from, to) in [(&mut from.x, &to.x), (&mut from.y, &to.y)] {
+        let along = (to[0] - from[0]).clamp(-0.7, 0.7);
+        from.clone_from(to);
+        from.iter_mut().for_each(|at| *at -= along);
+    }
+    from.press = to.press;
+}
+
+/// Number of drawn cells outside the surface.
+fn outside(scene: &Scene, probe: &Probe) -> usize {
+    let limit = scene.window.limit().map(|cells| cells as i64);
+    let outside = |over: &&Over| {
+        (0..2).any(|i| !(0..limit[i]).contains(&(probe.origin[i] + over.at[i] as i64)))
+    };
+    probe.over.iter().filter(outside).count()
+}
+
+/// The share that a cell transfers follows from its path.
+fn check_shares(scene: &Scene, probe: &Probe, seed: usize) {
+    let exchanging = scene.traits.exchanging;
+    let wrong = probe.over.iter().filter(|over| {
+        let own = exchanging.share(over.way / over.cover) * over.cover;
+        (own - over.rate).abs() > 1e-6
+    });
+    assert_eq!(wrong.count(), 0, "scene {seed}");
+}
+
+/// A seeded fault: the head twice the tolerance too high.
+fn raised(probe: &Probe) -> Probe {
+    let mut raised = probe.clone();
+    for over in &mut raised.over {
+        over.clearance += 2.0 * PLACE_TOLERANCE;
+    }
+    raised
+}
+
 #[test]
 fn the_head_is_over_the_same_cells() {
     let mut prober = Prober::new(device(), Stroker::Better).expect("taken");
@@ -52,30 +99,9 @@ fn the_head_is_over_the_same_cells() {
     let (mut all, mut beside, mut higher) = (0, 0, 0);
     for (seed, mut scene) in strips.chain((0..4).map(crumpled)).enumerate() {
         if seed % 2 == 1 {
-            // Where canvas and brush are bare, only low parts are drawn.
-            scene.load.take_all();
-            scene
-                .window
-                .planes_mut()
-                .for_each(|(_, plane)| plane.fill(0.0));
+            strip_bare(&mut scene);
         }
-        // A head that bends in the step is drawn anew in each part of it.
-        scene.from.z.clone_from(&scene.to.z);
-        let along = [
-            scene.to.x[0] - scene.from.x[0],
-            scene.to.y[0] - scene.from.y[0],
-        ];
-        let (from, to) = (&mut scene.from, &scene.to);
-        for (from, to) in [(&mut from.x, &to.x), (&mut from.y, &to.y)] {
-            from.clone_from(to);
-        }
-        from.x
-            .iter_mut()
-            .for_each(|x| *x -= along[0].clamp(-0.7, 0.7));
-        from.y
-            .iter_mut()
-            .for_each(|y| *y -= along[1].clamp(-0.7, 0.7));
-        from.press = to.press;
+        move_rigidly(&mut scene);
         let want = drawn(&mut scene.step(), 0.0);
         let probe = prober.run(&mut scene.step(), "draw_cells");
         let probe = probe.expect("done").expect("on the surface");
@@ -84,30 +110,13 @@ fn the_head_is_over_the_same_cells() {
         let (off, covered) = apart(&want, &probe, travel);
         println!("scene {seed}: {off} of {covered} cells differ");
         all += covered;
-        let limit = scene.window.limit().map(|cells| cells as i64);
-        let outside = |over: &&Over| {
-            (0..2).any(|i| !(0..limit[i]).contains(&(probe.origin[i] + over.at[i] as i64)))
-        };
-        beside += probe.over.iter().filter(outside).count();
+        beside += outside(&scene, &probe);
         // Where two segments are equally deep, rounding decides; places in faces seen edge on are inexact.
         let few = if scene.head.skin().is_some() { 20 } else { 400 };
         assert!(off * few <= covered, "scene {seed}: {off} of {covered}");
-        let exchanging = scene.traits.exchanging;
-        let shares = probe.over.iter().filter(|over| {
-            let own = exchanging.share(over.way / over.cover) * over.cover;
-            (own - over.rate).abs() > 1e-6
-        });
-        assert_eq!(shares.count(), 0, "scene {seed}");
-        let raise = |over: &Over| Over {
-            clearance: over.clearance + 2.0 * PLACE_TOLERANCE,
-            ..*over
-        };
-        let mut raised = probe.clone();
-        raised.over = probe.over.iter().map(raise).collect();
-        assert!(
-            apart(&want, &raised, travel).0 * few > covered,
-            "a fault passes"
-        );
+        check_shares(&scene, &probe, seed);
+        let raised = apart(&want, &raised(&probe), travel).0;
+        assert!(raised * few > covered, "a fault passes");
         let cut_higher = drawn(&mut scene.step(), 0.5);
         higher += usize::from(apart(&cut_higher, &probe, travel).0 * few > covered);
         let (off, _) = apart(&want, &probe, |over| over.way);

@@ -83,65 +83,100 @@ fn apart(one: &Scene, two: &Scene) -> (usize, usize) {
     (off, all)
 }
 
-#[test]
-fn paint_goes_both_ways_in_whole_units() {
-    let mut prober = Prober::new(device(), Stroker::Faster).expect("taken");
+/// A way to use the brush.
+#[derive(Clone, Copy)]
+struct Mode {
+    name: &'static str,
+    handling: Handling,
+    stain: f32,
+    lasting: bool,
+}
+
+impl Mode {
+    fn of(name: &'static str, handling: Handling) -> Self {
+        Self {
+            name,
+            handling,
+            stain: 0.0,
+            lasting: false,
+        }
+    }
+
+    fn scene(self, seed: u64) -> Scene {
+        let mut scene = Scene::far(seed, 5.0);
+        scene.handling = self.handling;
+        // Nothing comes from inside the brush.
+        scene.traits.refill = 0.0;
+        // One more paint on the brush than on the canvas, and the other way about.
+        (0..PAINTS + 2).for_each(|slot| {
+            scene.window.plane_mut(slot);
+        });
+        scene
+    }
+
+    fn step(self, scene: &mut Scene) -> Step<'_> {
+        let mut step = scene.step();
+        (step.stain, step.lasting) = (self.stain, self.lasting);
+        step
+    }
+
+    /// True if paint only changes places.
+    fn keeps_counts(self) -> bool {
+        self.handling.transfer != Transfer::Sponge && !self.lasting
+    }
+}
+
+fn modes() -> [Mode; 6] {
     let painting = Handling::default();
     let with = |transfer| Handling {
         transfer,
         ..painting
     };
-    for (name, handling, stain) in [
-        ("paint", painting, 0.0),
-        ("stained", painting, 3000.0),
-        ("sponge", with(Transfer::Sponge), 0.0),
-        ("marker", with(Transfer::Marker { flow: 0.002 }), 0.0),
-        (
-            "thin",
-            Handling {
-                most: 60_000.5,
-                ..painting
-            },
-            0.0,
-        ),
-        ("lasting", painting, 0.0),
-    ] {
+    let thin = Handling {
+        most: 60_000.5,
+        ..painting
+    };
+    [
+        Mode::of("paint", painting),
+        Mode {
+            stain: 3000.0,
+            ..Mode::of("stained", painting)
+        },
+        Mode::of("sponge", with(Transfer::Sponge)),
+        Mode::of("marker", with(Transfer::Marker { flow: 0.002 })),
+        Mode::of("thin", thin),
+        Mode {
+            lasting: true,
+            ..Mode::of("lasting", painting)
+        },
+    ]
+}
+
+#[test]
+fn paint_goes_both_ways_in_whole_units() {
+    let mut prober = Prober::new(device(), Stroker::Faster).expect("taken");
+    for mode in modes() {
+        let name = mode.name;
         let (mut off, mut all, mut faulty, mut changed) = (0, 0, 0, 0);
         for seed in 0..6 {
-            let scene = || {
-                let mut scene = Scene::far(seed, 5.0);
-                scene.handling = handling;
-                // Nothing comes from inside the brush.
-                scene.traits.refill = 0.0;
-                // One more paint on the brush than on the canvas, and the other way about.
-                (0..PAINTS + 2).for_each(|slot| {
-                    scene.window.plane_mut(slot);
-                });
-                scene
-            };
-            fn step_of<'a>(scene: &'a mut Scene, name: &str, stain: f32) -> Step<'a> {
-                let mut step = scene.step();
-                (step.stain, step.lasting) = (stain, name == "lasting");
-                step
-            }
-            let mut on_gpu = scene();
+            let mut on_gpu = mode.scene(seed);
             let counts = on_gpu.counts();
-            let probe = prober.run(&mut step_of(&mut on_gpu, name, stain), "refill");
+            let probe = prober.run(&mut mode.step(&mut on_gpu), "refill");
             let probe = probe.expect("done").expect("on the surface");
             lying(&on_gpu.window);
-            if !matches!(name, "sponge" | "lasting") {
+            if mode.keeps_counts() {
                 assert_eq!(on_gpu.counts(), counts, "{name} {seed}");
             }
             let on_cpu = |by: u64| {
-                let mut scene = scene();
+                let mut scene = mode.scene(seed);
                 let thresholds = scene.load.seed() + by;
-                blend(&probe, &mut step_of(&mut scene, name, stain), thresholds);
+                blend(&probe, &mut mode.step(&mut scene), thresholds);
                 scene
             };
             let (differ, of) = apart(&on_gpu, &on_cpu(0));
             (off, all) = (off + differ, all + of);
             faulty += apart(&on_gpu, &on_cpu(1)).0;
-            changed += apart(&on_gpu, &scene()).0;
+            changed += apart(&on_gpu, &mode.scene(seed)).0;
         }
         println!(
             "{name}: {off} of {all} counts differ, {changed} changed, by other thresholds {faulty}"

@@ -54,52 +54,40 @@ fn meets(
     )
 }
 
-#[test]
-fn a_row_touches_as_its_cells_do_and_each_fault_is_found() {
+/// Cells at random, of numbers that f32 has.
+fn random_cells(count: usize) -> Vec<Cell> {
     let mut random = Pcg32::new(11, 3);
     let mut unit = || f64::from(random.next_u32()) / 4_294_967_296.0;
-    let mut cells: Vec<Cell> = (0..997)
-        .map(|_| {
-            let cover = if unit() < 0.2 { 0.0 } else { unit() };
-            let [height, clearance] = [unit(), 0.6 * unit()];
-            let ride = 0.8 * (unit() - 0.5);
-            let base = ride - 0.3 * unit();
-            let film = (unit() * 60_000.0).floor();
-            let lies = if unit() < 0.1 {
-                0.0
-            } else {
-                (unit() * 60_000.0).floor()
-            };
-            [cover, height, clearance, base, ride, film, lies]
-        })
-        .collect();
-    for cell in &mut cells {
-        *cell = cell.map(|value| f64::from(value as f32));
-    }
-    let plane = |i: usize| {
-        cells
-            .iter()
-            .map(|cell| cell[i] as f32)
-            .collect::<Vec<f32>>()
+    let cell = |_| {
+        let cover = if unit() < 0.2 { 0.0 } else { unit() };
+        let [height, clearance] = [unit(), 0.6 * unit()];
+        let ride = 0.8 * (unit() - 0.5);
+        let base = ride - 0.3 * unit();
+        let film = (unit() * 60_000.0).floor();
+        let lies = if unit() < 0.1 {
+            0.0
+        } else {
+            (unit() * 60_000.0).floor()
+        };
+        let cell = [cover, height, clearance, base, ride, film, lies];
+        cell.map(|value| f64::from(value as f32))
     };
+    (0..count).map(cell).collect()
+}
+
+/// Counts as two paints: a third and the rest.
+fn parted(plane: &[f32]) -> [Vec<f32>; 2] {
+    let third: Vec<f32> = plane.iter().map(|count| (count / 3.0).floor()).collect();
+    let rest = plane.iter().zip(&third);
+    let rest = rest.map(|(all, part)| all - part).collect();
+    [third, rest]
+}
+
+/// Touches a row of cells of two paints a side, the second of which is the thinner.
+fn touched(cells: &[Cell]) -> Touching {
+    let plane = |i: usize| -> Vec<f32> { cells.iter().map(|cell| cell[i] as f32).collect() };
     let planes: Vec<Vec<f32>> = (0..7).map(plane).collect();
-    // Two paints a side: a third and the rest.
-    let parted = |plane: &[f32]| {
-        let third: Vec<f32> = plane.iter().map(|count| (count / 3.0).floor()).collect();
-        let rest = plane
-            .iter()
-            .zip(&third)
-            .map(|(all, part)| all - part)
-            .collect();
-        [third, rest]
-    };
     let (mut film, mut lies) = (parted(&planes[5]), parted(&planes[6]));
-    let thinner: f64 = lies[1]
-        .iter()
-        .zip(&cells)
-        .filter(|(_, cell)| meets(**cell, Fault::None).0)
-        .map(|(count, _)| f64::from(*count))
-        .sum();
     let way: Vec<f32> = planes[0].iter().map(|cover| 2.0 * cover).collect();
     let mut found = Touching::default();
     found.begin(cells.len());
@@ -125,16 +113,28 @@ fn a_row_touches_as_its_cells_do_and_each_fault_is_found() {
         },
         &mut found,
     );
+    found
+}
+
+/// True if a cell was touched as by the oracle.
+fn is_like(found: &Touching, i: usize, cell: &Cell, fault: Fault) -> bool {
+    let (touches, reach, gap) = meets(*cell, fault);
+    let [rate, way] = [1.0, 2.0].map(|factor| if touches { factor * cell[0] } else { 0.0 });
+    let near = |got: f32, want: f64, by: f64| (f64::from(got) - want).abs() < by;
+    let is_covered = cell[0] > 0.0;
+    near(found.rate[i], rate, 1e-6)
+        && near(found.way[i], way, 1e-6)
+        && (!is_covered || near(found.reach[i], reach, 1e-3))
+        && (!is_covered || near(found.gap[i], gap, 2.0 + 1e-5 * gap))
+}
+
+#[test]
+fn a_row_touches_as_its_cells_do_and_each_fault_is_found() {
+    let cells = random_cells(997);
+    let found = touched(&cells);
     let off = |fault: Fault| {
-        let wrong = cells.iter().enumerate().filter(|(i, cell)| {
-            let (touches, reach, gap) = meets(**cell, fault);
-            let [rate, way] = [1.0, 2.0].map(|factor| if touches { factor * cell[0] } else { 0.0 });
-            let near = |got: f32, want: f64, by: f64| (f64::from(got) - want).abs() < by;
-            !near(found.rate[*i], rate, 1e-6)
-                || !near(found.way[*i], way, 1e-6)
-                || cell[0] > 0.0 && !near(found.reach[*i], reach, 1e-3)
-                || cell[0] > 0.0 && !near(found.gap[*i], gap, 2.0 + 1e-5 * gap)
-        });
+        let wrong = cells.iter().enumerate();
+        let wrong = wrong.filter(|(i, cell)| !is_like(&found, *i, cell, fault));
         wrong.count()
     };
     assert_eq!(off(Fault::None), 0);
@@ -149,13 +149,12 @@ fn a_row_touches_as_its_cells_do_and_each_fault_is_found() {
         println!("{fault:?} {found}");
         assert!(found > 20, "{fault:?}: {found}");
     }
-    let touching: Vec<&Cell> = cells
-        .iter()
-        .filter(|cell| meets(**cell, Fault::None).0)
-        .collect();
-    let wet: f64 = touching.iter().map(|cell| cell[6]).sum();
+    let touching = cells.iter().filter(|cell| meets(**cell, Fault::None).0);
+    let lies: Vec<f32> = touching.map(|cell| cell[6] as f32).collect();
+    let sum = |counts: &[f32]| counts.iter().copied().map(f64::from).sum::<f64>();
+    let [_, thinner] = parted(&lies);
     assert_eq!(
         (found.cells, found.wet),
-        (touching.len() as f64, [wet, thinner])
+        (lies.len() as f64, [sum(&lies), sum(&thinner)])
     );
 }

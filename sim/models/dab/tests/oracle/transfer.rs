@@ -188,25 +188,25 @@ fn saturation_is_that_of_the_oracle_and_each_fault_is_found() {
     }
 }
 
-/// A row of two paints: one side gains what the other loses, in the proportions of the donor.
-#[test]
-fn paints_go_over_alike_and_none_is_lost() {
-    let cells = 500;
-    let number = |i: usize, factor: usize| (i * factor % 997) as f32 * 300.0;
-    let plane = |factor: usize| (0..cells).map(|i| number(i, factor)).collect::<Vec<f32>>();
-    let mut held = [plane(7), plane(13)];
-    let mut canvas = [plane(3), plane(29)];
-    let sum = |planes: &[Vec<f32>; 2]| -> Vec<f32> {
-        planes[0]
-            .iter()
-            .zip(&planes[1])
-            .map(|(a, b)| a + b)
-            .collect()
-    };
-    let before = (held.clone(), canvas.clone());
-    let totals = (sum(&before.0), sum(&before.1));
-    let even = |value: f32| vec![value; cells];
-    let planes = [even(0.19), even(2.0), even(1.0), even(0.0)];
+/// Transfer rate and path in a row.
+const RATE: f32 = 0.19;
+const WAY: f32 = 2.0;
+/// Threshold of the row's first cell.
+const THRESHOLD: f32 = 0.4;
+
+/// Counts of two paints by cell.
+type TwoPaints = [Vec<f32>; 2];
+
+fn sum(planes: &TwoPaints) -> Vec<f32> {
+    let pairs = planes[0].iter().zip(&planes[1]);
+    pairs.map(|(a, b)| a + b).collect()
+}
+
+/// Brush and canvas after a transfer along a row.
+fn blended(brush: &TwoPaints, canvas: &TwoPaints) -> [TwoPaints; 2] {
+    let [mut brush, mut canvas] = [brush.clone(), canvas.clone()];
+    let even = |value: f32| vec![value; brush[0].len()];
+    let planes = [even(RATE), even(WAY), even(1.0), even(0.0)];
     let row = Row {
         rate: &planes[0],
         way: &planes[1],
@@ -214,48 +214,64 @@ fn paints_go_over_alike_and_none_is_lost() {
         gap: &planes[3],
     };
     let mut paints = Paints {
-        brush: &mut held.each_mut().map(|plane| &mut plane[..]),
+        brush: &mut brush.each_mut().map(|plane| &mut plane[..]),
         canvas: &mut canvas.each_mut().map(|plane| &mut plane[..]),
         starts: [0; 2],
     };
-    blend(&row, &FREE, 0.4, &mut paints);
-    let brush = held;
+    blend(&row, &FREE, THRESHOLD, &mut paints);
+    [brush, canvas]
+}
+
+/// Quanta that leave brush and canvas on a cell of the row.
+fn leaving_on(i: usize, brush: f32, canvas: f32) -> [f64; 2] {
+    let meeting = Meeting {
+        brush,
+        canvas,
+        rate: RATE,
+        way: WAY,
+        reach: 1.0,
+        gap: 0.0,
+    };
+    let threshold = (THRESHOLD + i as f32 * 0.754_877_7).fract();
+    leaving(&meeting, &FREE, threshold).map(f64::from)
+}
+
+/// A row of two paints: one side gains what the other loses, in the proportions of the donor.
+#[test]
+fn paints_go_over_alike_and_none_is_lost() {
+    let cells = 500;
+    let number = |i: usize, factor: usize| (i * factor % 997) as f32 * 300.0;
+    let plane = |factor: usize| (0..cells).map(|i| number(i, factor)).collect::<Vec<f32>>();
+    let before = [[plane(7), plane(13)], [plane(3), plane(29)]];
+    let [brush_before, canvas_before] = &before;
+    let [brush, canvas] = blended(brush_before, canvas_before);
+    let [brush_total, canvas_total] = before.each_ref().map(sum);
+    let total_after = sum(&canvas);
     let mut mixed = 0;
     for i in 0..cells {
         for slot in 0..2 {
-            let gained = canvas[slot][i] - before.1[slot][i];
-            assert_eq!(gained, before.0[slot][i] - brush[slot][i], "cell {i}");
+            let gained = canvas[slot][i] - canvas_before[slot][i];
+            assert_eq!(gained, brush_before[slot][i] - brush[slot][i], "cell {i}");
         }
         // C_new = (V_r·C_i + V'_l·C'_i)/(V_r + V'_l): the shares of a paint afterwards.
-        let [given, taken] = leaving(
-            &Meeting {
-                brush: totals.0[i],
-                canvas: totals.1[i],
-                rate: 0.19,
-                way: 2.0,
-                reach: 1.0,
-                gap: 0.0,
-            },
-            &FREE,
-            (0.4 + i as f32 * 0.754_877_7).fract(),
-        )
-        .map(f64::from);
-        let (b, c) = (f64::from(totals.0[i]), f64::from(totals.1[i]));
-        let after = sum(&canvas)[i];
-        if b > 0.0 && c > 0.0 && after > 10_000.0 {
-            let (own, other) = (f64::from(before.1[0][i]) / c, f64::from(before.0[0][i]) / b);
-            let expected = ((c - taken) * own + given * other) / (c - taken + given);
-            let got = f64::from(canvas[0][i]) / f64::from(after);
-            // A threshold near 1 may round either way.
-            if (got - expected).abs() < 1e-3 {
-                mixed += 1;
-            }
-            let swapped = ((c - taken) * other + given * own) / (c - taken + given);
-            assert!(
-                (got - swapped).abs() > 1e-4 || (own - other).abs() < 0.05,
-                "a fault passes"
-            );
+        let [given, taken] = leaving_on(i, brush_total[i], canvas_total[i]);
+        let [b, c, after] = [brush_total[i], canvas_total[i], total_after[i]].map(f64::from);
+        if b <= 0.0 || c <= 0.0 || after <= 10_000.0 {
+            continue;
         }
+        let own = f64::from(canvas_before[0][i]) / c;
+        let other = f64::from(brush_before[0][i]) / b;
+        let expected = ((c - taken) * own + given * other) / (c - taken + given);
+        let got = f64::from(canvas[0][i]) / after;
+        // A threshold near 1 may round either way.
+        if (got - expected).abs() < 1e-3 {
+            mixed += 1;
+        }
+        let swapped = ((c - taken) * other + given * own) / (c - taken + given);
+        assert!(
+            (got - swapped).abs() > 1e-4 || (own - other).abs() < 0.05,
+            "a fault passes"
+        );
     }
     assert!(mixed > 450, "{mixed}");
 }

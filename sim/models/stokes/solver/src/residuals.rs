@@ -126,44 +126,7 @@ impl Residuals {
     ) -> Option<f64> {
         self.residual = r;
         let number = self.used;
-        let mut parts = [0.0; MEMORY];
-        let (mut squared, mut answers) = (0.0, 0.0);
-        for round in 0..2 {
-            let (before, _) = self.directions.split_at(number);
-            let products = over(
-                (stencils, number + 1),
-                &mut q,
-                &mut self.residual,
-                |field| {
-                    multiply_with(field, before);
-                },
-            );
-            let shares: Vec<f64> = before
-                .iter()
-                .zip(products)
-                .map(|(each, product)| product / each.squared)
-                .collect();
-            let whole = products[MEMORY];
-            if number > 0 {
-                let sums = over(
-                    (stencils, number + 1),
-                    &mut q,
-                    &mut self.residual,
-                    |field| {
-                        take_away(field, before, &shares);
-                    },
-                );
-                (squared, answers) = (sums[MEMORY], sums[MEMORY + 1]);
-            } else {
-                (squared, answers) = (whole, products[MEMORY + 1]);
-            }
-            for (part, share) in parts.iter_mut().zip(shares) {
-                *part += share;
-            }
-            if round == 1 || squared > CANCELLED * whole {
-                break;
-            }
-        }
+        let (squared, answers, parts) = self.orthogonalise(stencils, &mut q);
         let is_none = !squared.is_finite() || squared <= f64::from(f32::MIN_POSITIVE);
         let answers = answers / squared;
         self.directions[number] = Direction {
@@ -186,6 +149,45 @@ impl Residuals {
             }
         });
         Some(sums[0].sqrt())
+    }
+
+    /// Makes an image orthogonal to earlier ones, twice where much of it cancels: its square, its product with the
+    /// residual, and the components that were taken away.
+    fn orthogonalise(
+        &mut self,
+        stencils: [&Stencil; 4],
+        q: &mut Unknowns,
+    ) -> (f64, f64, [f64; MEMORY]) {
+        let (before, _) = self.directions.split_at(self.used);
+        let size = (stencils, self.used + 1);
+        let mut parts = [0.0; MEMORY];
+        let (mut squared, mut answers) = (0.0, 0.0);
+        for round in 0..2 {
+            let products = over(size, q, &mut self.residual, |field| {
+                multiply_with(field, before);
+            });
+            let shares: Vec<f64> = before
+                .iter()
+                .zip(products)
+                .map(|(each, product)| product / each.squared)
+                .collect();
+            let whole = products[MEMORY];
+            if before.is_empty() {
+                (squared, answers) = (whole, products[MEMORY + 1]);
+            } else {
+                let sums = over(size, q, &mut self.residual, |field| {
+                    take_away(field, before, &shares);
+                });
+                (squared, answers) = (sums[MEMORY], sums[MEMORY + 1]);
+            }
+            for (part, share) in parts.iter_mut().zip(shares) {
+                *part += share;
+            }
+            if round == 1 || squared > CANCELLED * whole {
+                break;
+            }
+        }
+        (squared, answers, parts)
     }
 
     /// Adds the directions, weighted, to the solution.

@@ -37,7 +37,8 @@ fn heights(stokes: &Stokes) -> Vec<f64> {
     heights
 }
 
-pub(crate) fn draw(folder: &Path) -> Drawn {
+/// A pool with the swell on it.
+fn swollen_pool() -> Stokes {
     let grid = Grid {
         cells: [LENGTH, 1, 24],
         ends: [
@@ -52,21 +53,19 @@ pub(crate) fn draw(folder: &Path) -> Drawn {
         let filled = (DEPTH + SWELL * wave(x as usize) - z as f64).clamp(0.0, 1.0);
         stokes.volume.paints[0][place] = (filled * f64::from(CAPACITY)) as u32;
     }
-    // .5 Pa·s at 1200 kg/m³.
-    let conditions = Conditions {
-        cell_m: 1.25e-4,
-        seconds: 0.01,
-        paint: Paint::newtonian(0.5 / 1200.0),
-        pull: [0.0, 0.0, -GRAVITY],
-    };
+    stokes
+}
+
+/// Lets the pool level and draws its surfaces; the remaining share of the swell over time, s.
+fn draw_pool(image: &mut Image, conditions: &Conditions) -> Vec<[f64; 2]> {
+    let mut stokes = swollen_pool();
     let cell_mm = 1e3 * conditions.cell_m;
-    let mut image = Image::new(1180, 480);
     let pool = Axes {
         area: [70.0, 30.0, 560.0, 400.0],
         x: [0.0, LENGTH as f64 * cell_mm],
         y: [1.6, 2.4],
     };
-    pool.frame(&mut image, [2.0, 0.2], [0, 1]);
+    pool.frame(image, [2.0, 0.2], [0, 1]);
     let mut swells = Vec::new();
     for step in 0..=STEPS {
         let surface = heights(&stokes);
@@ -80,24 +79,42 @@ pub(crate) fn draw(folder: &Path) -> Drawn {
             let point = |(x, height): (usize, &f64)| [(x as f64 + 0.5) * cell_mm, height * cell_mm];
             let curve: Vec<[f64; 2]> = surface.iter().enumerate().map(point).collect();
             let colour = viridis(0.9 * step as f64 / STEPS as f64);
-            pool.curve(&mut image, &curve, 1.6, colour);
+            pool.curve(image, &curve, 1.6, colour);
         }
-        stokes.step(&[], &conditions);
+        stokes.step(&[], conditions);
     }
+    swells
+}
+
+/// Draws the swell over time beside its exact decay, 1/s.
+fn draw_decay(image: &mut Image, swells: &[[f64; 2]], rate: f64) {
     let decay = Axes {
         area: [720.0, 30.0, 420.0, 400.0],
         x: [0.0, 0.6],
         y: [0.0, 1.0],
     };
-    decay.frame(&mut image, [0.1, 0.2], [1, 1]);
-    let rate = rate(&conditions);
+    decay.frame(image, [0.1, 0.2], [1, 1]);
     let exact: Vec<[f64; 2]> = (0..=120)
         .map(|number| 0.005 * f64::from(number))
         .map(|time| [time, exp(-rate * time)])
         .collect();
-    decay.curve(&mut image, &exact, 1.6, RED);
+    decay.curve(image, &exact, 1.6, RED);
     let computed: Vec<[f64; 2]> = swells.iter().copied().step_by(2).collect();
-    decay.marks(&mut image, &computed, BLUE);
+    decay.marks(image, &computed, BLUE);
+}
+
+pub(crate) fn draw(folder: &Path) -> Drawn {
+    // .5 Pa·s at 1200 kg/m³.
+    let conditions = Conditions {
+        cell_m: 1.25e-4,
+        seconds: 0.01,
+        paint: Paint::newtonian(0.5 / 1200.0),
+        pull: [0.0, 0.0, -GRAVITY],
+    };
+    let mut image = Image::new(1180, 480);
+    let swells = draw_pool(&mut image, &conditions);
+    let rate = rate(&conditions);
+    draw_decay(&mut image, &swells, rate);
     let [time, left] = swells[STEPS / 2];
     println!(
         "level: {left:.4} after {time} s, exact {:.4}",

@@ -23,7 +23,7 @@ pub(crate) enum Along {
 pub(crate) type Weights = [f32; 4];
 
 impl Along {
-    /// Adjoint of interpolation.
+    /// Weights of the restriction, the adjoint of the interpolation.
     pub(crate) const fn restriction(self) -> Weights {
         match self {
             Self::Middles => [0.25, 0.75, 0.75, 0.25],
@@ -175,6 +175,48 @@ pub(crate) struct Workspace<'a> {
     pub(crate) by_y: &'a mut [f32],
 }
 
+impl Workspace<'_> {
+    /// Interpolates rows of a coarse plane along x, into the field that is halved along y and z.
+    fn mix_along_x(&mut self, along: Along, from: &[f32], rows: Range<usize>, z: usize) {
+        let [_, y_grid, coarse] = self.grids;
+        let width = y_grid.stride(1);
+        let weights = match along {
+            Along::Middles => [[0.25, 0.75, 0.0], [0.0, 0.75, 0.25]],
+            Along::Faces => [[0.0, 1.0, 0.0], [0.0, 0.5, 0.5]],
+        };
+        for y in rows {
+            let start = y * coarse.stride(1) + z * coarse.stride(2);
+            let row = &from[start..];
+            let start = y * width + z * y_grid.stride(2);
+            let into = &mut self.by_y[start..];
+            if y_grid.cells[0] != coarse.cells[0] {
+                mix_row(into, weights, row, (width - 1) / 2);
+            } else {
+                into[..width].copy_from_slice(&row[..width]);
+            }
+        }
+    }
+
+    /// Interpolates the rows of a plane along y, into the field that is halved along z.
+    fn mix_along_y(&mut self, along: Along, rows: Range<usize>, z: usize) {
+        let [z_grid, y_grid, _] = self.grids;
+        let width = z_grid.stride(1);
+        let source = &self.by_y[z * y_grid.stride(2)..];
+        for y in rows {
+            let row = |y: usize| &source[y * width..];
+            let start = y * width + z * z_grid.stride(2);
+            let into = &mut self.by_z[start..];
+            if z_grid.cells[1] != y_grid.cells[1] {
+                let ([a, b], weights) = along.beside(y);
+                let (into, [a, b]) = padded(width, into, [row(a), row(b)]);
+                mix(into, weights, a, b);
+            } else {
+                into[..width].copy_from_slice(&row(y)[..width]);
+            }
+        }
+    }
+}
+
 /// Sums over four fine places around each coarse one along each axis, for some layers of the coarse grid; the fine
 /// field is wrapped.
 pub(crate) fn gather(
@@ -241,11 +283,11 @@ pub(crate) fn spread(
     along: [Along; 3],
     from: &[f32],
     (fine, into, scale): (&Grid, &mut [f32], &[f32]),
-    [rows, planes]: &Layers,
+    layers: &Layers,
     workspace: &mut Workspace<'_>,
 ) {
-    let [z_grid, y_grid, coarse] = workspace.grids;
-    let width = fine.stride(1);
+    let [rows, planes] = layers;
+    let [z_grid, _, coarse] = workspace.grids;
     let is_halved = |axis: usize| fine.cells[axis] != coarse.cells[axis];
     if rows.is_empty() || planes.is_empty() {
         return;
@@ -258,37 +300,12 @@ pub(crate) fn spread(
             layers.clone()
         }
     };
-    let (coarse_rows, coarse_planes) = (beside(1, rows), beside(2, planes));
-    let weights = match along[0] {
-        Along::Middles => [[0.25, 0.75, 0.0], [0.0, 0.75, 0.25]],
-        Along::Faces => [[0.0, 1.0, 0.0], [0.0, 0.5, 0.5]],
-    };
-    for z in coarse_planes {
-        for y in coarse_rows.clone() {
-            let start = y * coarse.stride(1) + z * coarse.stride(2);
-            let row = &from[start..];
-            let start = y * y_grid.stride(1) + z * y_grid.stride(2);
-            let into = &mut workspace.by_y[start..];
-            if is_halved(0) {
-                mix_row(into, weights, row, (width - 1) / 2);
-            } else {
-                into[..width].copy_from_slice(&row[..width]);
-            }
-        }
-        let source = &workspace.by_y[z * y_grid.stride(2)..];
-        for y in rows.clone() {
-            let row = |y: usize| &source[y * width..];
-            let start = y * width + z * z_grid.stride(2);
-            let into = &mut workspace.by_z[start..];
-            if is_halved(1) {
-                let ([a, b], weights) = along[1].beside(y);
-                let (into, [a, b]) = padded(width, into, [row(a), row(b)]);
-                mix(into, weights, a, b);
-            } else {
-                into[..width].copy_from_slice(&row(y)[..width]);
-            }
-        }
+    let coarse_rows = beside(1, rows);
+    for z in beside(2, planes) {
+        workspace.mix_along_x(along[0], from, coarse_rows.clone(), z);
+        workspace.mix_along_y(along[1], rows.clone(), z);
     }
+    let width = fine.stride(1);
     let flat = rows.start * width..rows.end * width;
     for z in planes.clone() {
         let ([a, b], weights) = if is_halved(2) {

@@ -4,7 +4,7 @@
 //! rate of strain, weighted by the strained paint; every cell's inflow must equal its outflow. No constant and no code
 //! is shared with the solver.
 
-/// A seeded fault.
+/// Fault that a comparison with the basin has to find.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fault {
     /// Shear is the gradient of one velocity alone.
@@ -159,81 +159,103 @@ impl Basin {
         fault: Option<Fault>,
         system: &mut [Vec<f64>],
     ) {
-        let step = |mut cell: [isize; 3], axis: usize, by: isize| {
-            cell[axis] += by;
-            cell
-        };
-        for cell in self
-            .all_cells()
-            .into_iter()
-            .filter(|cell| self.is_wet(*cell))
-        {
-            let factor = if fault == Some(Fault::HalfNormal) {
-                1.0
-            } else {
-                2.0
-            };
-            let weight = factor * self.tau * self.filled(cell).unwrap_or(0.0);
-            for axis in 0..3 {
-                let terms = [
-                    (velocity(axis, step(cell, axis, 1)), 1.0),
-                    (velocity(axis, cell), -1.0),
-                ];
-                add_square(system, weight, &terms);
+        for cell in self.all_cells() {
+            if self.is_wet(cell) {
+                self.add_normal_strains(cell, velocity, fault, system);
             }
         }
         let [nx, ny, nz] = self.cells.map(|cells| cells as isize);
         for z in 0..=nz {
             for (y, x) in (0..=ny).flat_map(|y| (0..=nx).map(move |x| (y, x))) {
-                for (a, b) in [(0, 1), (0, 2), (1, 2)] {
-                    let cell = [x, y, z];
-                    let pairs = [
-                        [velocity(a, cell), velocity(a, step(cell, b, -1))],
-                        [velocity(b, cell), velocity(b, step(cell, a, -1))],
-                    ];
-                    let is_wall = |u: &Velocity| matches!(u, Velocity::Wall(_));
-                    let is_free = pairs.iter().flatten().any(|u| *u == Velocity::Air);
-                    if is_free && fault != Some(Fault::SurfaceSticks) {
-                        continue;
-                    }
-                    let near = if fault == Some(Fault::FullWalls) {
-                        1.0
-                    } else {
-                        0.5
-                    };
-                    let distance = pairs.map(|[one, other]| {
-                        if is_wall(&one) == is_wall(&other) {
-                            1.0
-                        } else {
-                            near
-                        }
-                    });
-                    let corners = [
-                        cell,
-                        step(cell, a, -1),
-                        step(cell, b, -1),
-                        step(step(cell, a, -1), b, -1),
-                    ];
-                    let paint: f64 = corners.iter().filter_map(|cell| self.filled(*cell)).sum();
-                    let share = if pairs.iter().flatten().any(is_wall) {
-                        1.0
-                    } else {
-                        0.25 * paint
-                    };
-                    let mut terms = Vec::new();
-                    for (which, [one, other]) in pairs.into_iter().enumerate() {
-                        if which == 0 || fault != Some(Fault::WithoutCrossTerm) {
-                            terms.extend([
-                                (one, 1.0 / distance[which]),
-                                (other, -1.0 / distance[which]),
-                            ]);
-                        }
-                    }
-                    add_square(system, self.tau * share * distance[0] * distance[1], &terms);
+                for axes in [[0, 1], [0, 2], [1, 2]] {
+                    self.add_shear([x, y, z], axes, velocity, fault, system);
                 }
             }
         }
     }
+
+    /// The gradients of a cell's velocities along their own axes.
+    fn add_normal_strains(
+        &self,
+        cell: [isize; 3],
+        velocity: &impl Fn(usize, [isize; 3]) -> Velocity,
+        fault: Option<Fault>,
+        system: &mut [Vec<f64>],
+    ) {
+        let factor = if fault == Some(Fault::HalfNormal) {
+            1.0
+        } else {
+            2.0
+        };
+        let weight = factor * self.tau * self.filled(cell).unwrap_or(0.0);
+        for axis in 0..3 {
+            let terms = [
+                (velocity(axis, step(cell, axis, 1)), 1.0),
+                (velocity(axis, cell), -1.0),
+            ];
+            add_square(system, weight, &terms);
+        }
+    }
+
+    /// The shear in the plane of two axes, on the edge at a cell's lower corner.
+    fn add_shear(
+        &self,
+        cell: [isize; 3],
+        [a, b]: [usize; 2],
+        velocity: &impl Fn(usize, [isize; 3]) -> Velocity,
+        fault: Option<Fault>,
+        system: &mut [Vec<f64>],
+    ) {
+        let pairs = [
+            [velocity(a, cell), velocity(a, step(cell, b, -1))],
+            [velocity(b, cell), velocity(b, step(cell, a, -1))],
+        ];
+        let is_wall = |u: &Velocity| matches!(u, Velocity::Wall(_));
+        let is_free = pairs.iter().flatten().any(|u| *u == Velocity::Air);
+        if is_free && fault != Some(Fault::SurfaceSticks) {
+            return;
+        }
+        let near = if fault == Some(Fault::FullWalls) {
+            1.0
+        } else {
+            0.5
+        };
+        let distance = pairs.map(|[one, other]| {
+            if is_wall(&one) == is_wall(&other) {
+                1.0
+            } else {
+                near
+            }
+        });
+        let corners = [
+            cell,
+            step(cell, a, -1),
+            step(cell, b, -1),
+            step(step(cell, a, -1), b, -1),
+        ];
+        let paint: f64 = corners.iter().filter_map(|cell| self.filled(*cell)).sum();
+        let share = if pairs.iter().flatten().any(is_wall) {
+            1.0
+        } else {
+            0.25 * paint
+        };
+        let mut terms = Vec::new();
+        for (which, [one, other]) in pairs.into_iter().enumerate() {
+            if which == 0 || fault != Some(Fault::WithoutCrossTerm) {
+                terms.extend([
+                    (one, 1.0 / distance[which]),
+                    (other, -1.0 / distance[which]),
+                ]);
+            }
+        }
+        add_square(system, self.tau * share * distance[0] * distance[1], &terms);
+    }
+}
+
+/// The cell that is `by` cells farther along an axis.
+fn step(mut cell: [isize; 3], axis: usize, by: isize) -> [isize; 3] {
+    cell[axis] += by;
+    cell
 }
 
 /// Adds half of a weight times the square of a sum to the objective.
