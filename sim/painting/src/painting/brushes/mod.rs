@@ -111,15 +111,16 @@ impl PaintingBrush {
         }
     }
 
-    /// Seed of the disorder of its bristles in its next stroke, and of a load before that.
-    pub(crate) fn next_seed(&self) -> u64 {
-        (self.strokes as u64 + 1).wrapping_mul(0x9e37_79b1) & SEEDS
+    /// Seed of the disorder of its bristles in the painting's stroke with this number, from 1 on, and of a load before
+    /// it.
+    pub(crate) fn seed_of(&self, stroke: u64) -> u64 {
+        let own = u64::from(name_hash(&self.name));
+        (stroke.wrapping_mul(0x9e37_79b1) ^ own) & SEEDS
     }
 
-    /// Disorders its bristles by the number of strokes since its take began, so that a take is the same however often
-    /// it is played.
-    pub(crate) fn disorder(&mut self) {
-        self.seed = self.next_seed();
+    /// Disorders its bristles for the painting's stroke with this number.
+    pub(crate) fn disorder(&mut self, stroke: u64) {
+        self.seed = self.seed_of(stroke);
         self.head = self.disordered();
         Arc::make_mut(&mut self.load).disorder(self.seed);
     }
