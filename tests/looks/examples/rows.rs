@@ -6,6 +6,17 @@ use maulstick_looks::reading::{ALL, case::CASES};
 fn main() -> Result<(), maulstick_rig::UserError> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let number = |i: usize| words.get(i).and_then(|word| word.parse::<f64>().ok());
+    if words.first().is_some_and(|word| word == "marks") {
+        let trial = maulstick_looks::marks::Trial {
+            cell_mm: 0.125,
+            painter: Painter::Able,
+        };
+        for measure in maulstick_looks::marks::ALL {
+            for (name, value, unit) in measure(trial)? {
+                println!("{name} {value:.3} {unit}");
+            }
+        }
+    }
     for own in ALL {
         if words.first().is_some_and(|word| {
             !own.rows

@@ -8,10 +8,10 @@ use maulstick_painting::edits::{Dry, Load};
 use maulstick_painting::{EditError, Painting, PaintingSetup};
 use maulstick_rig::UserError;
 use maulstick_session::Offline;
-use maulstick_types::Edit;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 use maulstick_types::values::BrushName;
+use maulstick_types::{Edit, Mixture};
 
 use crate::map::Map;
 
@@ -105,15 +105,31 @@ impl Easel {
             .map_err(refused)
     }
 
+    /// Loads the brush in hand with a mixture.
+    ///
+    /// # Errors
+    /// [`UserError`] if there is no such paint.
     pub fn load(&mut self, mixture: &str) -> Result<(), UserError> {
-        let mixture = mixture
-            .parse()
-            .map_err(|error| UserError::failure(format!("{error}")))?;
-        let brush = self.offline.brush().to_owned();
+        self.load_with(mixture, None)
+    }
+
+    /// Loads the halves of the brush in hand with two mixtures.
+    ///
+    /// # Errors
+    /// [`UserError`] if there is no such paint.
+    pub fn load_beside(&mut self, left: &str, right: &str) -> Result<(), UserError> {
+        self.load_with(left, Some(right))
+    }
+
+    fn load_with(&mut self, mixture: &str, beside: Option<&str>) -> Result<(), UserError> {
+        let read = |text: &str| {
+            let read = text.parse::<Mixture>();
+            read.map_err(|error| UserError::failure(format!("{error}")))
+        };
         self.edit(Load {
-            mixture,
-            beside: None,
-            brush: BrushName::new(brush)?,
+            mixture: read(mixture)?,
+            beside: beside.map(read).transpose()?,
+            brush: BrushName::new(self.offline.brush())?,
         })
     }
 
