@@ -441,12 +441,15 @@ impl Sequencer {
         loads: &[Mixture],
         again: bool,
     ) -> Result<(), EditError> {
-        let before = self.announced.get(brush).filter(|_| again);
-        if let Some(step) = before.map(|take| take.step) {
+        let before = self.announced.get(brush).filter(|_| again).copied();
+        if let Some(TakeSnapshot { step, .. }) = before {
             let undone = self.painting.undo_to(brush, step);
             undone.inspect_err(|_| self.painting.break_record())?;
         }
         self.painting.take(brush, loads)?;
+        if let Some(TakeSnapshot { strokes, .. }) = before {
+            self.painting.bench.accounts.work.strokes = strokes;
+        }
         let step = self.painting.newest_step();
         // A step that may have to be taken back is not merged with earlier ones.
         self.painting.part_history(step);
@@ -455,6 +458,7 @@ impl Sequencer {
             epoch,
             ended: false,
             step,
+            strokes: self.painting.bench.accounts.work.strokes,
         };
         self.gone.remove(&device);
         self.announced.insert(brush.to_owned(), take);

@@ -32,6 +32,9 @@ pub struct BrushSnapshot {
     pub strokes: usize,
     /// Seed of the disorder of its bristles.
     pub seed: u64,
+    /// Way of its newest stroke, m, along which its bristles regroup.
+    #[serde(default)]
+    pub way_m: f64,
 }
 
 /// A step that is not finished.
@@ -88,6 +91,9 @@ pub struct PaintingSnapshot {
 /// Work that was done on a painting.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WorkSnapshot {
+    /// Strokes of all brushes; 0 at first in paintings from before they were counted.
+    #[serde(default)]
+    pub strokes: u64,
     /// Steps of the paint model.
     pub steps: u64,
     /// Cells of its footprints.
@@ -135,6 +141,9 @@ pub struct TakeSnapshot {
     pub ended: bool,
     /// The newest step when it began.
     pub step: u64,
+    /// Strokes of the painting when it began.
+    #[serde(default)]
+    pub strokes: u64,
 }
 
 /// States of a brush that an undo dropped before they were painted.

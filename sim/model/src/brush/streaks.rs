@@ -12,7 +12,7 @@ const OWN: f32 = 0.6;
 /// share of the mean.
 const PATCH: f32 = 0.16;
 const PATCHES: f32 = 1.0;
-const SINGLE: f32 = 1.2;
+const SINGLE: f32 = 1.8;
 /// The least that a bristle takes of the mean.
 const SHARE_MIN: f32 = 0.08;
 

@@ -29,13 +29,13 @@ fn total(films: &Films, texel: usize) -> f64 {
     films.iter().map(|film| film[texel]).sum()
 }
 
-/// Moves half the share of the unheld difference from the fuller film to the other; a share of 1 leaves the held
-/// difference.
-fn even_out(films: &mut Films, [a, b]: [usize; 2], share: f64, holds: f64) {
+/// Moves half the share of the unheld difference from the fuller film to the other, of the parts above `clings`; a share
+/// of 1 leaves the held difference.
+fn even_out(films: &mut Films, [a, b]: [usize; 2], share: f64, [holds, clings]: [f64; 2]) {
     let (one, other) = (total(films, a), total(films, b));
     let (from, to) = if one > other { (a, b) } else { (b, a) };
     let full = one.max(other);
-    let falls = (one - other).abs() - holds;
+    let falls = (one.max(clings) - other.max(clings)).abs() - holds;
     if falls <= 0.0 {
         return;
     }
@@ -60,7 +60,7 @@ fn oracle(scene: &Scene, seep: Seep, holds: f64) -> Films {
     for (_, pair) in pairs.filter(|(number, _)| due(*number)) {
         for k in 0..TEXELS_PER_STRIP {
             let texels = [0, 1].map(|side| pair[side] as usize * TEXELS_PER_STRIP + k);
-            even_out(&mut films, texels, seep.beside, holds);
+            even_out(&mut films, texels, seep.beside, [holds, 0.0]);
         }
     }
     for strip in (0..scene.head.strips()).filter(|strip| due(*strip)) {
@@ -73,7 +73,7 @@ fn oracle(scene: &Scene, seep: Seep, holds: f64) -> Films {
                     strip * TEXELS_PER_STRIP + k + 1,
                 ],
                 seep.along,
-                0.0,
+                [0.0, seep.clings],
             );
         }
     }
@@ -104,13 +104,15 @@ fn the_fuller_film_gives_and_none_is_lost() {
         let uneven = spread(&scene.load);
         let want = oracle(&scene, scene.traits.seep, HOLDS);
         let own = scene.traits.seep;
-        let less = |part: [f64; 2]| Seep {
+        let less = |part: [f64; 3]| Seep {
             beside: part[0] * own.beside,
             along: part[1] * own.along,
+            clings: part[2] * own.clings,
         };
         let others = [
-            (less([0.9, 1.0]), HOLDS),
-            (less([1.0, 0.9]), HOLDS),
+            (less([0.9, 1.0, 1.0]), HOLDS),
+            (less([1.0, 0.9, 1.0]), HOLDS),
+            (less([1.0, 1.0, 0.9]), HOLDS),
             (own, 0.9 * HOLDS),
         ]
         .map(|(seep, holds)| oracle(&scene, seep, holds));

@@ -85,7 +85,7 @@ impl PaintingEdit for Load {
                 .collect(),
         };
         let own = &mut bench.brushes[brush];
-        let seed = own.next_seed();
+        let seed = own.seed_of(bench.accounts.work.strokes + 1);
         own.fill(&parts, &bench.desk, seed, &mut bench.accounts.ledger);
         bench.end_step_of(brush);
         Ok(Applied::Done)

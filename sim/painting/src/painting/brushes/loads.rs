@@ -46,9 +46,8 @@ impl PaintingBrush {
     /// Gives it the loads that its next strokes take in turn.
     pub(crate) fn begin_take(&mut self, loads: &[Mixture], cell_m: f64) {
         self.loads = loads.to_vec();
-        (self.strokes, self.seed) = (0, 0);
+        self.strokes = 0;
         (self.stroke, self.path) = (None, None);
-        self.head = self.disordered();
         self.thin_for(cell_m);
     }
 

@@ -22,6 +22,8 @@ use super::backend::deferral::Deferral;
 use crate::brush_colour::Carried;
 use crate::error::BrushError;
 
+/// Way of a stroke from one regrouping of its bristles to the next, m: they move by less than a cell in it.
+const REGROUP_M: f64 = 0.7e-3;
 /// Bits of a seed.
 const SEEDS: u64 = 0x7fff_ffff;
 
@@ -50,6 +52,8 @@ pub(crate) struct PaintingBrush {
     pub(crate) strokes: usize,
     /// Seed of the disorder of its bristles.
     pub(crate) seed: u64,
+    /// Way of its newest stroke, m.
+    pub(crate) way_m: f64,
     /// Surface under it at its newest step.
     pub(crate) under: UnderBrush,
     /// Progress of its deferred steps.
@@ -75,6 +79,7 @@ impl PaintingBrush {
             loads: Vec::new(),
             strokes: 0,
             seed: 0,
+            way_m: 0.0,
             under: UnderBrush::default(),
             deferral: Deferral::default(),
         }
@@ -111,17 +116,33 @@ impl PaintingBrush {
         }
     }
 
-    /// Seed of the disorder of its bristles in its next stroke, and of a load before that.
-    pub(crate) fn next_seed(&self) -> u64 {
-        (self.strokes as u64 + 1).wrapping_mul(0x9e37_79b1) & SEEDS
+    /// Seed of the disorder of its bristles in the painting's stroke with this number, from 1 on, and of a load before
+    /// it.
+    pub(crate) fn seed_of(&self, stroke: u64) -> u64 {
+        let own = u64::from(name_hash(&self.name));
+        (stroke.wrapping_mul(0x9e37_79b1) ^ own) & SEEDS
     }
 
-    /// Disorders its bristles by the number of strokes since its take began, so that a take is the same however often
-    /// it is played.
-    pub(crate) fn disorder(&mut self) {
-        self.seed = self.next_seed();
+    /// Disorders its bristles for the painting's stroke with this number.
+    pub(crate) fn disorder(&mut self, stroke: u64) {
+        self.seed = self.seed_of(stroke);
+        self.way_m = 0.0;
         self.head = self.disordered();
         Arc::make_mut(&mut self.load).disorder(self.seed);
+    }
+
+    /// Goes on by a way, m; its bristles have regrouped before the next.
+    pub(crate) fn go_on(&mut self, way_m: f64) {
+        let before = self.regroupings();
+        self.way_m += way_m;
+        if self.regroupings() != before {
+            self.head = self.disordered();
+        }
+    }
+
+    /// Number of times that its bristles have regrouped in its stroke.
+    fn regroupings(&self) -> f64 {
+        (self.way_m / REGROUP_M).floor()
     }
 
     /// Thins it to the strips that cells of `cell_m` can resolve.
@@ -143,7 +164,8 @@ impl PaintingBrush {
 
     /// The head with its bristles disordered by its seed.
     pub(crate) fn disordered(&self) -> Arc<Head> {
-        Arc::new(self.tidy.disordered(self.seed))
+        let way_m = self.regroupings() * REGROUP_M;
+        Arc::new(self.tidy.disordered(self.seed, way_m))
     }
 
     /// The page of its load; a new one where the load has changed since the last.

@@ -102,7 +102,9 @@ impl Stroke<'_> {
         self.brush_mut().stroke = Some(stroke);
         if !rested {
             self.bench.settle();
-            self.brush_mut().disorder();
+            self.bench.accounts.work.strokes += 1;
+            let number = self.bench.accounts.work.strokes;
+            self.brush_mut().disorder(number);
         }
         self.thin();
         self.bench.begin_stroke_step(self.brush);

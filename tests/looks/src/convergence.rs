@@ -10,30 +10,34 @@ use std::ops::Range;
 use maulstick_num::{cos, sin};
 use maulstick_rig::UserError;
 
-use super::easel::{Easel, Map, Stroke, brush};
-use super::marks::Painter;
-use crate::report::Report;
+use crate::Row;
+use crate::easel::{Easel, Stroke, brush};
+use crate::map::Map;
+use crate::marks::Painter;
 
 /// Sides of the cells, mm, each half of the last.
 const CELLS_MM: [f64; 3] = [0.25, 0.125, 0.0625];
 /// Largest share by which volumes differ.
-pub(super) const MOST_VOLUME: f64 = 0.05;
+pub(crate) const MOST_VOLUME: f64 = 0.05;
 /// Largest ratio of the powers of an octave, either way.
-pub(super) const MOST_POWER: f64 = 2.0;
+pub(crate) const MOST_POWER: f64 = 2.0;
 /// Canvas, and the heights of its strokes, mm.
 const SIZE_MM: [f64; 2] = [80.0, 100.0];
 const HEIGHTS_MM: [f64; 4] = [14.0, 38.0, 62.0, 86.0];
 const PAINT: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
 
 /// Paint of strokes on cells of one size.
-pub(super) struct Left {
+pub(crate) struct Left {
     volume_mm3: f64,
     /// Height of the surface in the middle of each stroke, µm.
     relief: Vec<Map>,
 }
 
-/// Measures and reports.
-pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
+/// Measures.
+///
+/// # Errors
+/// [`UserError`] if a stroke is refused.
+pub fn run(mut row: impl FnMut(Row)) -> Result<(), UserError> {
     let left: Result<Vec<Left>, UserError> = (CELLS_MM.into_iter())
         .map(|cell_mm| left_on(cell_mm, Painter::Able))
         .collect();
@@ -41,14 +45,20 @@ pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
         .windows(2)
         .map(|pair| apart(&pair[0], &pair[1]))
         .collect();
-    let worst = |number: usize| pairs.iter().map(|pair| pair[number]).fold(0.0, f64::max);
-    report.beside("convergence.volume", worst(0), "", ("target", MOST_VOLUME));
-    report.beside("convergence.spectrum", worst(1), "", ("target", MOST_POWER));
+    let names = ["convergence.volume", "convergence.spectrum"];
+    for (number, (name, most)) in names.into_iter().zip([MOST_VOLUME, MOST_POWER]).enumerate() {
+        row(Row {
+            name,
+            value: pairs.iter().map(|pair| pair[number]).fold(0.0, f64::max),
+            unit: "",
+            target: Some(most),
+        });
+    }
     Ok(())
 }
 
 /// Strokes of a fully loaded 14 mm flat on cells of a size; the faulty painter's load shrinks with the cells.
-pub(super) fn left_on(cell_mm: f64, painter: Painter) -> Result<Left, UserError> {
+pub(crate) fn left_on(cell_mm: f64, painter: Painter) -> Result<Left, UserError> {
     let mut flat = brush("flat", 14.0)?;
     if painter == Painter::Faulty {
         flat.load.film_um *= cell_mm / CELLS_MM[0];
@@ -69,7 +79,7 @@ pub(super) fn left_on(cell_mm: f64, painter: Painter) -> Result<Left, UserError>
 }
 
 /// The share by which the volumes on coarser and finer cells differ, and the largest ratio of the powers of an octave.
-pub(super) fn apart(coarse: &Left, fine: &Left) -> [f64; 2] {
+pub(crate) fn apart(coarse: &Left, fine: &Left) -> [f64; 2] {
     let volume = (fine.volume_mm3 / coarse.volume_mm3 - 1.0).abs();
     let fine: Vec<Map> = fine.relief.iter().map(halved).collect();
     let ratios = [0, 1].into_iter().flat_map(|axis| {

@@ -8,11 +8,12 @@ use maulstick_painting::edits::{Dry, Load};
 use maulstick_painting::{EditError, Painting, PaintingSetup};
 use maulstick_rig::UserError;
 use maulstick_session::Offline;
-use maulstick_types::Edit;
-use maulstick_types::paint::TILE;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 use maulstick_types::values::BrushName;
+use maulstick_types::{Edit, Mixture};
+
+use crate::map::Map;
 
 const RATE_HZ: f64 = 250.0;
 /// Speed of the hand, mm/s.
@@ -20,24 +21,24 @@ const SPEED: f64 = 100.0;
 /// Share of the head's length by which full pressure presses a brush in.
 const DEPTH_SHARE: f64 = 0.5;
 /// Name of the first brush.
-const BRUSH: &str = "main";
+pub(crate) const BRUSH: &str = "main";
 
 /// A straight stroke.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stroke {
+pub struct Stroke {
     /// Ends, mm from the lower left corner.
-    pub(crate) from: [f64; 2],
+    pub from: [f64; 2],
     /// As `from`.
-    pub(crate) to: [f64; 2],
+    pub to: [f64; 2],
     /// Pressure, 0 to 1.
-    pub(crate) pressure: f64,
+    pub pressure: f64,
     /// Lean of the handle along the path, degrees.
-    pub(crate) lean_deg: f64,
+    pub lean_deg: f64,
 }
 
 impl Stroke {
     /// Along x at a height.
-    pub(crate) fn along(y: f64, from: f64, to: f64, pressure: f64) -> Self {
+    pub fn along(y: f64, from: f64, to: f64, pressure: f64) -> Self {
         Self {
             from: [from, y],
             to: [to, y],
@@ -48,10 +49,10 @@ impl Stroke {
 }
 
 /// A canvas with a hand over it.
-pub(crate) struct Easel {
-    pub(crate) offline: Offline,
+pub struct Easel {
+    pub offline: Offline,
     size_mm: [f64; 2],
-    pub(crate) cell_mm: f64,
+    pub cell_mm: f64,
     now_s: f64,
 }
 
@@ -60,7 +61,7 @@ fn refused(refusal: EditError) -> UserError {
 }
 
 /// A brush of the library, so wide.
-pub(crate) fn brush(kind: &str, width_mm: f64) -> Result<BrushFile, UserError> {
+pub fn brush(kind: &str, width_mm: f64) -> Result<BrushFile, UserError> {
     let found = BrushFile::library(kind).map_err(|error| UserError::failure(error.to_string()))?;
     found
         .scaled_to(width_mm)
@@ -69,7 +70,7 @@ pub(crate) fn brush(kind: &str, width_mm: f64) -> Result<BrushFile, UserError> {
 
 impl Easel {
     /// A canvas with a tooth and a brush.
-    pub(crate) fn new(
+    pub fn new(
         size_mm: [f64; 2],
         cell_mm: f64,
         tooth: &str,
@@ -94,33 +95,63 @@ impl Easel {
         })
     }
 
-    pub(crate) fn edit(&mut self, edit: impl Into<Edit>) -> Result<(), UserError> {
+    pub fn edit(&mut self, edit: impl Into<Edit>) -> Result<(), UserError> {
         self.offline.edit(edit).map(drop).map_err(refused)
     }
 
-    pub(crate) fn take_up(&mut self, name: &str, file: BrushFile) -> Result<(), UserError> {
+    pub fn take_up(&mut self, name: &str, file: BrushFile) -> Result<(), UserError> {
         self.offline
             .take_up(name, file, DEPTH_SHARE)
             .map_err(refused)
     }
 
-    pub(crate) fn load(&mut self, mixture: &str) -> Result<(), UserError> {
-        let mixture = mixture
-            .parse()
-            .map_err(|error| UserError::failure(format!("{error}")))?;
-        let brush = self.offline.brush().to_owned();
+    /// Loads the brush in hand with a mixture.
+    ///
+    /// # Errors
+    /// [`UserError`] if there is no such paint.
+    pub fn load(&mut self, mixture: &str) -> Result<(), UserError> {
+        self.load_with(mixture, None)
+    }
+
+    /// Loads the halves of the brush in hand with two mixtures.
+    ///
+    /// # Errors
+    /// [`UserError`] if there is no such paint.
+    pub fn load_beside(&mut self, left: &str, right: &str) -> Result<(), UserError> {
+        self.load_with(left, Some(right))
+    }
+
+    fn load_with(&mut self, mixture: &str, beside: Option<&str>) -> Result<(), UserError> {
+        let read = |text: &str| {
+            let read = text.parse::<Mixture>();
+            read.map_err(|error| UserError::failure(format!("{error}")))
+        };
         self.edit(Load {
-            mixture,
-            beside: None,
-            brush: BrushName::new(brush)?,
+            mixture: read(mixture)?,
+            beside: beside.map(read).transpose()?,
+            brush: BrushName::new(self.offline.brush())?,
         })
     }
 
-    pub(crate) fn dry(&mut self) -> Result<(), UserError> {
+    /// Paints a stroke as a step of a script: a take of its own, with its load.
+    pub fn script_stroke(&mut self, mixture: &str, stroke: &Stroke) -> Result<(), UserError> {
+        self.offline.begin_take(Vec::new()).map_err(refused)?;
+        self.load(mixture)?;
+        self.stroke(stroke)
+    }
+
+    /// The slot of a paint.
+    pub fn slot(&mut self, paint: &str) -> Result<usize, UserError> {
+        let scene = self.offline.painting_mut().scene();
+        let slot = scene.paints.iter().position(|own| own.name == paint);
+        slot.ok_or_else(|| UserError::failure(format!("no paint '{paint}' in the painting")))
+    }
+
+    pub fn dry(&mut self) -> Result<(), UserError> {
         self.edit(Dry::whole(CANVAS))
     }
 
-    pub(crate) fn stroke(&mut self, stroke: &Stroke) -> Result<(), UserError> {
+    pub fn stroke(&mut self, stroke: &Stroke) -> Result<(), UserError> {
         let way = [0, 1].map(|i| stroke.to[i] - stroke.from[i]);
         let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
         let samples = (length / SPEED * RATE_HZ).ceil().max(2.0) as usize;
@@ -159,7 +190,7 @@ impl Easel {
     }
 
     /// Thickness of the wet paint, µm, of one slot or of all.
-    pub(crate) fn film(&mut self, slot: Option<usize>) -> Map {
+    pub fn film(&mut self, slot: Option<usize>) -> Map {
         let painting = self.offline.painting_mut();
         painting.commit();
         let mut map = Map::new(self.size_mm, self.cell_mm);
@@ -177,7 +208,7 @@ impl Easel {
     }
 
     /// Height of tooth and dry relief, µm.
-    pub(crate) fn ground(&mut self) -> Map {
+    pub fn ground(&mut self) -> Map {
         let painting = self.offline.painting_mut();
         painting.commit();
         let mut map = Map::new(self.size_mm, self.cell_mm);
@@ -192,130 +223,4 @@ impl Easel {
         }
         map
     }
-}
-
-/// A number a cell, row after row from the bottom.
-#[derive(Clone, Debug)]
-pub(crate) struct Map {
-    pub(crate) size: [usize; 2],
-    pub(crate) cell_mm: f64,
-    pub(crate) cells: Vec<f32>,
-}
-
-impl Map {
-    fn new(size_mm: [f64; 2], cell_mm: f64) -> Self {
-        let size = size_mm.map(|mm| (mm / cell_mm).round() as usize);
-        Self {
-            size,
-            cell_mm,
-            cells: vec![0.0; size[0] * size[1]],
-        }
-    }
-
-    /// The same value in all cells.
-    #[cfg(test)]
-    pub(crate) fn level(size: [usize; 2], cell_mm: f64, value: f32) -> Self {
-        Self {
-            size,
-            cell_mm,
-            cells: vec![value; size[0] * size[1]],
-        }
-    }
-
-    fn add(&mut self, tile: [u32; 2], plane: &[f32], scale: f32) {
-        let [left, bottom] = tile.map(|place| place as usize * TILE);
-        for (row, cells) in plane.chunks_exact(TILE).enumerate() {
-            let y = bottom + row;
-            if y >= self.size[1] {
-                break;
-            }
-            let width = TILE.min(self.size[0].saturating_sub(left));
-            let to = &mut self.cells[y * self.size[0] + left..][..width];
-            to.iter_mut()
-                .zip(cells)
-                .for_each(|(to, value)| *to += value * scale);
-        }
-    }
-
-    /// Cells of a rectangle in mm, as columns and rows.
-    fn span(&self, from: [f64; 2], to: [f64; 2]) -> [std::ops::Range<usize>; 2] {
-        let cell =
-            |mm: f64, i: usize| ((mm / self.cell_mm).round().max(0.0) as usize).min(self.size[i]);
-        [0, 1].map(|i| cell(from[i], i)..cell(to[i], i))
-    }
-
-    /// A rectangle in mm.
-    pub(crate) fn cut(&self, from: [f64; 2], to: [f64; 2]) -> Self {
-        let [across, up] = self.span(from, to);
-        let size = [across.len(), up.len()];
-        let rows = up.map(|y| &self.cells[y * self.size[0]..][across.clone()]);
-        Self {
-            size,
-            cell_mm: self.cell_mm,
-            cells: rows.flatten().copied().collect(),
-        }
-    }
-
-    /// Less the mean of each row.
-    pub(crate) fn less_rows(mut self) -> Self {
-        let means = self.profile(1);
-        for (row, mean) in self.cells.chunks_exact_mut(self.size[0]).zip(means) {
-            row.iter_mut().for_each(|value| *value -= mean as f32);
-        }
-        self
-    }
-
-    pub(crate) fn mean(&self) -> f64 {
-        self.cells.iter().map(|v| f64::from(*v)).sum::<f64>() / self.cells.len().max(1) as f64
-    }
-
-    pub(crate) fn plus(&self, other: &Self) -> Self {
-        let mut sum = self.clone();
-        sum.cells
-            .iter_mut()
-            .zip(&other.cells)
-            .for_each(|(a, b)| *a += b);
-        sum
-    }
-
-    /// Means of the columns (0) or rows (1).
-    pub(crate) fn profile(&self, axis: usize) -> Vec<f64> {
-        let mut sums = vec![0.0; self.size[axis]];
-        for (i, value) in self.cells.iter().enumerate() {
-            let place = if axis == 0 {
-                i % self.size[0]
-            } else {
-                i / self.size[0]
-            };
-            sums[place] += f64::from(*value);
-        }
-        let count = self.size[1 - axis] as f64;
-        sums.iter().map(|sum| sum / count).collect()
-    }
-}
-
-/// Slope of y by x, least squares.
-pub(crate) fn slope(x: &[f32], y: &[f32]) -> f64 {
-    let count = x.len() as f64;
-    let mean = |v: &[f32]| v.iter().map(|v| f64::from(*v)).sum::<f64>() / count;
-    let (mx, my) = (mean(x), mean(y));
-    let (mut sxy, mut sxx) = (0.0, 0.0);
-    for (x, y) in x.iter().zip(y) {
-        sxy += (f64::from(*x) - mx) * (f64::from(*y) - my);
-        sxx += (f64::from(*x) - mx) * (f64::from(*x) - mx);
-    }
-    sxy / sxx
-}
-
-/// Correlation of two profiles.
-pub(crate) fn correlation(a: &[f64], b: &[f64]) -> f64 {
-    let count = a.len() as f64;
-    let (ma, mb) = (a.iter().sum::<f64>() / count, b.iter().sum::<f64>() / count);
-    let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
-    for (x, y) in a.iter().zip(b) {
-        ab += (x - ma) * (y - mb);
-        aa += (x - ma) * (x - ma);
-        bb += (y - mb) * (y - mb);
-    }
-    ab / (aa * bb).sqrt()
 }

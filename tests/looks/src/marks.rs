@@ -5,25 +5,26 @@ use maulstick_rig::UserError;
 use maulstick_painting::edits::{Fill, FillPaint};
 use maulstick_types::values::FilmThickness;
 
-use super::easel::{Easel, Map, Stroke, brush, correlation, slope};
+use crate::easel::{Easel, Stroke, brush};
+use crate::map::{Map, correlation, slope};
 
 /// Name, value, unit.
-pub(crate) type Number = (&'static str, f64, &'static str);
+pub type Number = (&'static str, f64, &'static str);
 /// A measurement.
-pub(crate) type Measure = fn(Trial) -> Result<Vec<Number>, UserError>;
+pub type Measure = fn(Trial) -> Result<Vec<Number>, UserError>;
 
 /// Conditions of a measurement.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Trial {
+pub struct Trial {
     /// Side of a cell, mm.
-    pub(crate) cell_mm: f64,
+    pub cell_mm: f64,
     /// Painter of the trial.
-    pub(crate) painter: Painter,
+    pub painter: Painter,
 }
 
 /// Painter of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Painter {
+pub enum Painter {
     /// One who follows the measurement's instructions.
     Able,
     /// One with too little paint, too heavy a hand or the wrong tool: the seeded fault of each number.
@@ -41,7 +42,7 @@ impl Trial {
 }
 
 /// All of them.
-pub(crate) const ALL: [Measure; 8] = [
+pub const ALL: [Measure; 8] = [
     long_strokes,
     six_loads,
     dry_brush,
@@ -56,7 +57,7 @@ const PAINT: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
 
 /// Long strokes of a 14 mm flat, each fully loaded: films, roughness, filling of the tooth. Bristles differ in each, so
 /// the numbers are means of several.
-pub(crate) fn long_strokes(trial: Trial) -> Result<Vec<Number>, UserError> {
+pub fn long_strokes(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut flat = brush("flat", 14.0)?;
     flat.load.film_um *= trial.pick(1.0, 0.1);
     let mut easel = Easel::new([190.0, 105.0], trial.cell_mm, "linen", flat)?;
@@ -106,7 +107,7 @@ fn long_stroke(film: &Map, ground: &Map, y: f64) -> [Number; 11] {
 }
 
 /// Roughness below 1 mm of wavelength along an axis, rms µm: heights less their running mean.
-pub(crate) fn rough(map: &Map, axis: usize) -> f64 {
+pub fn rough(map: &Map, axis: usize) -> f64 {
     let half = ((0.5 / map.cell_mm).round() as usize).max(1);
     let (step, lines) = match axis {
         0 => (1, map.size[1]),
@@ -127,7 +128,7 @@ pub(crate) fn rough(map: &Map, axis: usize) -> f64 {
 }
 
 /// The 99.9th percentile of |height − median of its 3×3|, µm.
-pub(crate) fn towers(map: &Map) -> f64 {
+pub fn towers(map: &Map) -> f64 {
     let [width, height] = map.size;
     let mut off = Vec::new();
     for y in 1..height - 1 {
@@ -145,7 +146,7 @@ pub(crate) fn towers(map: &Map) -> f64 {
 }
 
 /// Six full loads on one petal.
-pub(crate) fn six_loads(trial: Trial) -> Result<Vec<Number>, UserError> {
+pub fn six_loads(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut easel = Easel::new([50.0, 30.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
     for load in 0..6 {
         if load < trial.pick(6, 1) {
@@ -163,7 +164,7 @@ pub(crate) fn six_loads(trial: Trial) -> Result<Vec<Number>, UserError> {
 }
 
 /// Share of a load used by three strokes of 120 mm.
-pub(crate) fn three_strokes(trial: Trial) -> Result<Vec<Number>, UserError> {
+pub fn three_strokes(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut easel = Easel::new([160.0, 70.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
     easel.load(PAINT)?;
     let held = |easel: &mut Easel| {
@@ -189,7 +190,7 @@ pub(crate) fn three_strokes(trial: Trial) -> Result<Vec<Number>, UserError> {
 
 /// Cells covered by more than a film, by height of the ground: of all, of the lowest and of the highest tenth; and the
 /// ratio of paint on the highest.
-fn by_height(film: &Map, ground: &Map) -> [f64; 4] {
+pub(crate) fn by_height(film: &Map, ground: &Map) -> [f64; 4] {
     const COVERED_UM: f32 = 1.5;
     let mut order: Vec<usize> = (0..film.cells.len()).collect();
     order.sort_by(|a, b| ground.cells[*a].total_cmp(&ground.cells[*b]));
@@ -214,7 +215,7 @@ fn by_height(film: &Map, ground: &Map) -> [f64; 4] {
 const NEARLY_EMPTY: f64 = 0.15;
 
 /// A nearly empty brush, lightly.
-pub(crate) fn dry_brush(trial: Trial) -> Result<Vec<Number>, UserError> {
+pub fn dry_brush(trial: Trial) -> Result<Vec<Number>, UserError> {
     let flat = brush("flat", 14.0)?.wiped(trial.pick(NEARLY_EMPTY, 1.0));
     let mut easel = Easel::new([115.0, 24.0], trial.cell_mm, "linen", flat)?;
     easel.load(PAINT)?;
@@ -235,7 +236,7 @@ pub(crate) fn dry_brush(trial: Trial) -> Result<Vec<Number>, UserError> {
 }
 
 /// White lightly over dried ridges.
-pub(crate) fn scumble(trial: Trial) -> Result<Vec<Number>, UserError> {
+pub fn scumble(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut easel = Easel::new([100.0, 64.0], trial.cell_mm, "linen", brush("round", 6.0)?)?;
     for row in 0..12 {
         easel.load("Burnt Umber")?;
@@ -277,7 +278,7 @@ pub(crate) fn scumble(trial: Trial) -> Result<Vec<Number>, UserError> {
 }
 
 /// A clean knife through a level film.
-pub(crate) fn knife(trial: Trial) -> Result<Vec<Number>, UserError> {
+pub fn knife(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut easel = Easel::new(
         [90.0, 50.0],
         trial.cell_mm,
@@ -311,7 +312,7 @@ pub(crate) fn knife(trial: Trial) -> Result<Vec<Number>, UserError> {
 }
 
 /// Streak profiles of separate loads.
-pub(crate) fn separate_loads(trial: Trial) -> Result<Vec<Number>, UserError> {
+pub fn separate_loads(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut easel = Easel::new([70.0, 100.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
     let mut profiles = Vec::new();
     for row in 0..4 {
@@ -339,7 +340,7 @@ pub(crate) fn separate_loads(trial: Trial) -> Result<Vec<Number>, UserError> {
 }
 
 /// White through wet blue.
-pub(crate) fn through_wet(trial: Trial) -> Result<Vec<Number>, UserError> {
+pub fn through_wet(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut easel = Easel::new([80.0, 50.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
     for y in [15.0, 25.0, 35.0] {
         easel.load(trial.pick("Ultramarine Blue", PAINT))?;

@@ -103,7 +103,7 @@ fn a_knife_leaves_no_ripples() {
     let rough = film.iter().find(|(name, ..)| *name == "knife_rough_um");
     let rough = rough.expect("measured").1;
     assert!(rough <= 15.0, "{rough}");
-    let mut map = super::easel::Map::level([100, 100], 0.125, 50.0);
+    let mut map = crate::map::Map::level([100, 100], 0.125, 50.0);
     assert!(marks::rough(&map, 0) < 1.0);
     for (cell, height) in map.cells.iter_mut().enumerate() {
         *height += if cell % 4 < 2 { 20.0 } else { -20.0 };
@@ -129,7 +129,7 @@ fn wet_paint_is_smooth_along_a_stroke() {
     let (towers, along) = (number("towers_um"), number("rough_um.along"));
     assert!(towers <= 60.0, "{towers}");
     assert!(along <= 8.0, "{along}");
-    let mut map = super::easel::Map::level([100, 100], 0.125, 300.0);
+    let mut map = crate::map::Map::level([100, 100], 0.125, 300.0);
     assert!(marks::towers(&map) < 1.0);
     for k in 0..20 {
         map.cells[517 + 411 * k] += 500.0;
