@@ -50,8 +50,10 @@ impl Stroke {
 
 /// A canvas with a hand over it.
 pub struct Easel {
+    /// Brush and paint.
     pub offline: Offline,
     size_mm: [f64; 2],
+    /// Side of a cell, mm.
     pub cell_mm: f64,
     now_s: f64,
 }
@@ -61,6 +63,9 @@ fn refused(refusal: EditError) -> UserError {
 }
 
 /// A brush of the library, so wide.
+///
+/// # Errors
+/// [`UserError`] if there is none, or none so wide.
 pub fn brush(kind: &str, width_mm: f64) -> Result<BrushFile, UserError> {
     let found = BrushFile::library(kind).map_err(|error| UserError::failure(error.to_string()))?;
     found
@@ -70,6 +75,9 @@ pub fn brush(kind: &str, width_mm: f64) -> Result<BrushFile, UserError> {
 
 impl Easel {
     /// A canvas with a tooth and a brush.
+    ///
+    /// # Errors
+    /// [`UserError`] if the painting refuses it.
     pub fn new(
         size_mm: [f64; 2],
         cell_mm: f64,
@@ -95,10 +103,18 @@ impl Easel {
         })
     }
 
+    /// Makes an edit.
+    ///
+    /// # Errors
+    /// [`UserError`] if the painting refuses it.
     pub fn edit(&mut self, edit: impl Into<Edit>) -> Result<(), UserError> {
         self.offline.edit(edit).map(drop).map_err(refused)
     }
 
+    /// Takes up a brush, with the load that it had when it was put down.
+    ///
+    /// # Errors
+    /// [`UserError`] if the painting refuses it.
     pub fn take_up(&mut self, name: &str, file: BrushFile) -> Result<(), UserError> {
         self.offline
             .take_up(name, file, DEPTH_SHARE)
@@ -134,6 +150,9 @@ impl Easel {
     }
 
     /// Paints a stroke as a step of a script: a take of its own, with its load.
+    ///
+    /// # Errors
+    /// [`UserError`] if the painting refuses it.
     pub fn script_stroke(&mut self, mixture: &str, stroke: &Stroke) -> Result<(), UserError> {
         self.offline.begin_take(Vec::new()).map_err(refused)?;
         self.load(mixture)?;
@@ -141,16 +160,27 @@ impl Easel {
     }
 
     /// The slot of a paint.
+    ///
+    /// # Errors
+    /// [`UserError`] if no brush has been loaded with it.
     pub fn slot(&mut self, paint: &str) -> Result<usize, UserError> {
         let scene = self.offline.painting_mut().scene();
         let slot = scene.paints.iter().position(|own| own.name == paint);
         slot.ok_or_else(|| UserError::failure(format!("no paint '{paint}' in the painting")))
     }
 
+    /// Dries the whole canvas.
+    ///
+    /// # Errors
+    /// [`UserError`] if the painting refuses it.
     pub fn dry(&mut self) -> Result<(), UserError> {
         self.edit(Dry::whole(CANVAS))
     }
 
+    /// Paints a stroke.
+    ///
+    /// # Errors
+    /// [`UserError`] if the painting refuses it.
     pub fn stroke(&mut self, stroke: &Stroke) -> Result<(), UserError> {
         let way = [0, 1].map(|i| stroke.to[i] - stroke.from[i]);
         let length = (way[0] * way[0] + way[1] * way[1]).sqrt();

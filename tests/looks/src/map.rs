@@ -26,8 +26,11 @@ impl Frame {
 /// A number a cell, row after row from the bottom.
 #[derive(Clone, Debug)]
 pub struct Map {
+    /// Columns and rows.
     pub size: [usize; 2],
+    /// Side of a cell, mm.
     pub cell_mm: f64,
+    /// The numbers, row after row from the bottom.
     pub cells: Vec<f32>,
 }
 
@@ -130,10 +133,14 @@ impl Map {
         self
     }
 
+    /// Mean of all.
+    #[must_use]
     pub fn mean(&self) -> f64 {
         self.cells.iter().map(|v| f64::from(*v)).sum::<f64>() / self.cells.len().max(1) as f64
     }
 
+    /// Sum with another map of the same cells.
+    #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
         let mut sum = self.clone();
         sum.cells
