@@ -98,7 +98,7 @@ proptest! {
 
 /// The seeded fault of the comparison.
 #[test]
-fn a_record_without_one_of_its_messages_gives_another_painting() {
+fn a_record_without_some_of_its_messages_gives_another_painting() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.maul");
     paint(&path, 5, 50);
@@ -106,7 +106,7 @@ fn a_record_without_one_of_its_messages_gives_another_painting() {
     let skips = |record: &Record| {
         let is_stroke = matches!(record.what, Accepted::State { .. });
         strokes += usize::from(is_stroke);
-        is_stroke && strokes == 3
+        is_stroke && (3..9).contains(&strokes)
     };
     let (_, again) = executed_again(&path, skips).expect("a record");
     assert!(again != stored(&path));

@@ -96,10 +96,12 @@ impl Exchanging {
     }
 }
 
-/// Share of a gap that fills where `share` of a difference evens out: 1 − (1 − share)¹⁶.
+/// Share of a gap that fills where `share` of a difference evens out: 1 − (1 − share)⁶⁴.
 #[inline(always)]
 fn filled(share: f32) -> f32 {
     let kept = (1.0 - share) * (1.0 - share);
+    let kept = kept * kept;
+    let kept = kept * kept;
     let kept = kept * kept;
     let kept = kept * kept;
     1.0 - kept * kept

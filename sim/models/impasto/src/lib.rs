@@ -86,7 +86,7 @@
 //!   velocities of the faces.
 //! - The squish −c·∇p is an explicit diffusion of coefficient c·h, bounded by .04. Central differences in cells grow
 //!   speckles above .2; differences across faces do not.
-//! - Between the ride of a bristle and the relief lies a gap, which its film fills beyond the gap's height, sixteen
+//! - Between the ride of a bristle and the relief lies a gap, which its film fills beyond the gap's height, 64
 //!   times as fast as films even out; a bridging film splits in its middle. So a full brush fills most of the tooth, an
 //!   empty one catches on peaks, a light one on dry ridges. A brush with a limit (a glaze) leaves up to as much again
 //!   in hollows, and has no limit on a palette, where paints are mixed.
@@ -101,8 +101,7 @@
 //! - Levelling belongs to the stroke and lasts a second. Under moving bristles, a hundredth of a second a cell,
 //!   levelling is not measurable. Heights go through sixteen rounds before all paints follow by their sum; blocks
 //!   without flow rest; cells under 1 mm flow on coarser grids first. Paint that the brush has left yields at 55 Pa,
-//!   which holds the ridges of bristles; thinner takes that away, and thinned paint drains from ridges and wets bare
-//!   ground.
+//!   which holds the ridges of bristles; thinner takes that away, and thinned paint wets bare ground.
 
 #[cfg(feature = "device")]
 pub mod device;

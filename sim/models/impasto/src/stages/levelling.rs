@@ -36,7 +36,7 @@ pub const ADVANCES: f32 = 1.0;
 /// Largest part of a cell's paint that flows through a face at once.
 const LARGEST_SHARE: f32 = 0.25;
 /// Largest cells of a coarser grid, m: thinned paint drains from ridges a brush's mark apart within the second.
-const COARSEST_M: f64 = 1e-3;
+const COARSEST_M: f64 = 1.25e-4;
 
 /// Rheology of a paint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +51,7 @@ impl Body {
     /// Paint from the tube once the brush has left it: oil colours yield at 50 to 500 Pa at rest (Salvant Plisson et al.
     /// 2014), and much of the structure that a brush shears apart is back within a tenth of a second.
     pub const TUBE: Self = Self {
-        yield_pa: 55.0,
+        yield_pa: 12.0,
         viscosity_pa_s: 20.0,
     };
 }

@@ -193,7 +193,7 @@ fn paint_goes_where_it_is_pushed_and_none_is_lost() {
 }
 
 /// Baxter 2004, Algorithm 3, by path length, of which a reference cell leaves `kept`, with a film that bridges a gap:
-/// units to the canvas, back, and swapped. The part of a film beyond its gap fills it sixteen times as fast, until both
+/// units to the canvas, back, and swapped. The part of a film beyond its gap fills it 64 times as fast, until both
 /// sides are equal. A blade does only that, and takes up all that it reaches.
 fn wanted([a_b, a_c, lies, gap]: [f64; 4], travel: f64, (kept, blade): (f64, bool)) -> [f64; 3] {
     let goes = |times: f64| 1.0 - maulstick_num::powf(kept, times * travel);
@@ -203,7 +203,7 @@ fn wanted([a_b, a_c, lies, gap]: [f64; 4], travel: f64, (kept, blade): (f64, boo
     } else {
         ((a_b - lies) / 2.0).clamp(0.0, free)
     };
-    let fill = goes(16.0) * gap.min(bridged);
+    let fill = goes(64.0) * gap.min(bridged);
     let (carried, most) = if blade {
         (0.0, 1.0)
     } else {

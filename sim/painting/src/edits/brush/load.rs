@@ -9,6 +9,7 @@ use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
 use crate::error::EditError;
 use crate::painting::Painting;
 use crate::painting::brushes::loads::named;
+use crate::painting::brushes::seed_of;
 
 /// Load a brush with paint
 ///
@@ -85,7 +86,7 @@ impl PaintingEdit for Load {
                 .collect(),
         };
         let own = &mut bench.brushes[brush];
-        let seed = own.seed_of(bench.accounts.work.strokes + 1);
+        let seed = seed_of(bench.accounts.work.strokes + 1);
         own.fill(&parts, &bench.desk, seed, &mut bench.accounts.ledger);
         bench.end_step_of(brush);
         Ok(Applied::Done)

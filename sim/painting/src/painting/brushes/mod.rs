@@ -23,9 +23,14 @@ use crate::brush_colour::Carried;
 use crate::error::BrushError;
 
 /// Way of a stroke from one regrouping of its bristles to the next, m: they move by less than a cell in it.
-const REGROUP_M: f64 = 0.7e-3;
+const REGROUP_M: f64 = 0.2e-3;
 /// Bits of a seed.
 const SEEDS: u64 = 0x7fff_ffff;
+
+/// Seed of the disorder of bristles in the painting's stroke with this number, from 1 on, and of a load before it.
+pub(crate) fn seed_of(stroke: u64) -> u64 {
+    stroke.wrapping_mul(0x9e37_79b1) & SEEDS
+}
 
 /// State of a brush in the painting.
 pub(crate) struct PaintingBrush {
@@ -116,32 +121,25 @@ impl PaintingBrush {
         }
     }
 
-    /// Seed of the disorder of its bristles in the painting's stroke with this number, from 1 on, and of a load before
-    /// it.
-    pub(crate) fn seed_of(&self, stroke: u64) -> u64 {
-        let own = u64::from(name_hash(&self.name));
-        (stroke.wrapping_mul(0x9e37_79b1) ^ own) & SEEDS
-    }
-
     /// Disorders its bristles for the painting's stroke with this number.
     pub(crate) fn disorder(&mut self, stroke: u64) {
-        self.seed = self.seed_of(stroke);
+        self.seed = seed_of(stroke);
         self.way_m = 0.0;
         self.head = self.disordered();
         Arc::make_mut(&mut self.load).disorder(self.seed);
     }
 
-    /// Goes on by a way, m; its bristles have regrouped before the next.
-    pub(crate) fn go_on(&mut self, way_m: f64) {
-        let before = self.regroupings();
-        self.way_m += way_m;
-        if self.regroupings() != before {
+    /// Regroups its bristles if it has gone on far enough since they had regrouped so many times; true if it has.
+    pub(crate) fn regroup(&mut self, before: f64) -> bool {
+        let is_due = self.regroupings() > before;
+        if is_due {
             self.head = self.disordered();
         }
+        is_due
     }
 
     /// Number of times that its bristles have regrouped in its stroke.
-    fn regroupings(&self) -> f64 {
+    pub(crate) fn regroupings(&self) -> f64 {
         (self.way_m / REGROUP_M).floor()
     }
 
@@ -164,8 +162,10 @@ impl PaintingBrush {
 
     /// The head with its bristles disordered by its seed.
     pub(crate) fn disordered(&self) -> Arc<Head> {
-        let way_m = self.regroupings() * REGROUP_M;
-        Arc::new(self.tidy.disordered(self.seed, way_m))
+        Arc::new(
+            self.tidy
+                .disordered(self.seed, self.regroupings() * REGROUP_M),
+        )
     }
 
     /// The page of its load; a new one where the load has changed since the last.

@@ -5,9 +5,11 @@ override SKIN: f32;
 override NEAR: f32;
 override POOL: f32;
 
-// Share of a gap that fills where `share` of a difference evens out: 1 − (1 − share)¹⁶.
+// Share of a gap that fills where `share` of a difference evens out: 1 − (1 − share)⁶⁴.
 fn filled(share: f32) -> f32 {
     var kept = (1.0 - share) * (1.0 - share);
+    kept *= kept;
+    kept *= kept;
     kept *= kept;
     kept *= kept;
     return 1.0 - kept * kept;

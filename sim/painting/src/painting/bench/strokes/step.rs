@@ -21,8 +21,7 @@ impl Stroke<'_> {
         self.bench.accounts.work.steps += 1;
         let traits = self.traits().doubled(doublings);
         let cell_m = self.scale.cell_m;
-        self.brush_mut()
-            .go_on(f64::from(traits.step_cells) * cell_m);
+        self.brush_mut().way_m += f64::from(traits.step_cells) * cell_m;
         let timing = self.timing();
         let height = self.paint_height(&traits, timing);
         let bounds = low_bounds(&self.brush().head, sweep.to, &traits, height);

@@ -79,7 +79,7 @@ impl Stroke<'_> {
             self.thin();
         }
         let waypoint = Waypoint::of(solve, scale, self.seen_fullness());
-        let head = Arc::clone(&self.brush().head);
+        let (head, before) = (Arc::clone(&self.brush().head), self.brush().regroupings());
         let path = if let Some((_, mut path)) = running {
             let to = (waypoint, solve.doublings());
             path.advance(&head, to, |sweep, doublings| self.step(sweep, doublings));
@@ -92,7 +92,13 @@ impl Stroke<'_> {
         } else {
             PathStepper::begin(&head, waypoint, scale)
         };
-        self.brush_mut().path = Some((surface, path));
+        let own = self.brush_mut();
+        let path = if own.regroup(before) {
+            path.regrouped(&own.head)
+        } else {
+            path
+        };
+        own.path = Some((surface, path));
         Ok(())
     }
 
@@ -146,7 +152,8 @@ impl Stroke<'_> {
 
     /// Steps the rest of the brush's path.
     pub(super) fn finish(&mut self, mut path: PathStepper) {
-        let head = Arc::clone(&self.brush().head);
+        let (head, before) = (Arc::clone(&self.brush().head), self.brush().regroupings());
         path.end(&head, |sweep, doublings| self.step(sweep, doublings));
+        self.brush_mut().regroup(before);
     }
 }
