@@ -21,7 +21,7 @@ pub struct Exchanging {
     pub evens: f32,
     /// The most that goes over along a reference cell, units.
     pub most: f32,
-    /// Share of a skin ([`SKIN`]) that changes places along a reference cell without a gap, where both sides are wet.
+    /// Share of the thinner film that changes places along a reference cell, by that which goes over.
     pub swap: f32,
 }
 
@@ -31,12 +31,11 @@ impl Exchanging {
         ln_kept: LN_KEPT,
         evens: 1.0,
         most: MAX_TRANSFER,
-        swap: 1.8,
+        swap: 0.03,
     };
     /// Soft hair that flares: it hardly takes paint up, and blends the paint that it moves through.
     pub(crate) const BLENDER: Self = Self {
-        swap: 0.05,
-        most: 0.0004,
+        swap: 0.3,
         ..Self::BRISTLES
     };
     /// A blade: it scrapes off paint above its edge, and fills hollows below it; ln(1 − .6).
@@ -44,7 +43,7 @@ impl Exchanging {
         ln_kept: -0.916_290_7,
         evens: 0.0,
         most: 1.0,
-        swap: 0.01,
+        swap: 0.03,
     };
 
     /// Share of the paint that goes over along a travel in reference cells.
@@ -85,32 +84,26 @@ impl Exchanging {
         fill + if difference > 0.0 { amount } else { -amount }
     }
 
-    /// Paint that is swapped along a travel where brush and canvas are wet, units: where their films touch, across
-    /// `gap`, a bristle and the paint under it shear a skin between them, whatever lies beyond it on either side; the
-    /// wider the gap, the less.
+    /// Paint that is swapped where brush and canvas are wet, units: their films mix as the bristles move through them,
+    /// but no deeper than a film, whatever the height of the paint.
     #[must_use]
     #[inline(always)]
-    pub fn swapped(&self, [on_brush, lying, gap]: [f32; 3], travel: f32) -> f32 {
-        let skin = (on_brush - gap).max(0.0).min(lying).min(SKIN);
-        (self.swap * travel * (NEAR / (NEAR + gap))).min(1.0) * skin
+    pub fn swapped(&self, on_brush: f32, on_canvas: f32, share: f32) -> f32 {
+        self.swap * share * on_brush.min(on_canvas).min(SWAP_FILM)
     }
 }
 
-/// Share of a gap that fills where `share` of a difference evens out: 1 − (1 − share)⁶⁴.
+/// Share of a gap that fills where `share` of a difference evens out: 1 − (1 − share)¹⁶.
 #[inline(always)]
 fn filled(share: f32) -> f32 {
     let kept = (1.0 - share) * (1.0 - share);
     let kept = kept * kept;
     let kept = kept * kept;
-    let kept = kept * kept;
-    let kept = kept * kept;
     1.0 - kept * kept
 }
 
-/// Thickness of the skin of a bristle that is exchanged with the paint under it, units: 70 µm.
-pub const SKIN: f32 = 0.0028;
-/// Gap at which half as much is sheared as where bristle and surface touch, units: 15 µm.
-pub const NEAR: f32 = 0.0006;
+/// Depth of the films that are swapped, units: 100 µm.
+pub const SWAP_FILM: f32 = 0.004;
 
 /// Additional deposit of a film-limited brush in the hollows under its bristles, in multiples of its film: thin paint
 /// is dragged off the ridges and gathers there.
@@ -149,7 +142,7 @@ mod tests {
             let rule = Exchanging::BRISTLES;
             let over = |s: f32| rule.transfer([a_b, a_c, a_c, 0.0], s, rule.share(s)).abs();
             prop_assert_eq!(over(0.0), 0.0);
-            prop_assert_eq!(rule.swapped([a_b, a_c, 0.0], 0.0), 0.0);
+            prop_assert_eq!(rule.swapped(a_b, a_c, rule.share(0.0)), 0.0);
             let (less, more) = (over(s), over(1.0));
             prop_assert!(less <= more + 1e-9);
             prop_assert!(less <= a_b.max(a_c));

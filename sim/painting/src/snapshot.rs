@@ -32,9 +32,6 @@ pub struct BrushSnapshot {
     pub strokes: usize,
     /// Seed of the disorder of its bristles.
     pub seed: u64,
-    /// Way of its newest stroke, m, along which its bristles regroup.
-    #[serde(default)]
-    pub way_m: f64,
 }
 
 /// A step that is not finished.

@@ -91,7 +91,6 @@ pub(crate) fn apart(coarse: &Left, fine: &Left) -> [f64; 2] {
         };
         let (one, other) = (of(&coarse.relief), of(&fine));
         let ratio = |(a, b): (&f64, &f64)| (a / b).max(b / a);
-        eprintln!("axis {axis}: {one:.0?} {other:.0?}");
         one.iter().zip(&other).map(ratio).collect::<Vec<_>>()
     });
     [volume, ratios.fold(1.0, f64::max)]

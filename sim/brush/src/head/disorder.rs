@@ -1,50 +1,32 @@
-//! Disorder of the bristles. It changes with each stroke, so that no two have the same streaks or ends, and along it:
-//! tresses part and regroup within some centimetres, so that no streak goes on to the end.
+//! Disorder of the bristles. It changes each time a brush is loaded, so that no two strokes have the same streaks or
+//! ends.
 
 use super::{Head, STATIONS, place_along, smoothstep};
 
 /// Width of a tress of bristles that stray together, by half the head's width.
 const TRESS: f32 = 0.16;
 /// Greatest offset of a tress, by half the head's width and thickness there.
-const STRAY: f32 = 0.08;
+const STRAY: f32 = 0.04;
 /// Shortening of the shortest bristle, by the head's length.
-const RAGGED: f32 = 0.02;
-/// Additional shortening of a single bristle at the rim, by its own.
-const RIM: f32 = 4.0;
-/// Power of the place from the middle to the rim by which that grows.
-const RIM_POWER: i32 = 8;
-/// Way along which tresses regroup, m.
-const REGROUPS_M: f64 = 20e-3;
+const RAGGED: f32 = 0.01;
 /// Numbers of the planes of noise: across the width, across the thickness, along.
 const PLANES: [u64; 3] = [11, 12, 13];
 
 impl Head {
-    /// This head with its bristles in the disorder of a seed, after a way of the stroke in m; seed 0 leaves them as in
-    /// the brush file.
+    /// This head with its bristles in the disorder of a seed; seed 0 leaves them as in the brush file.
     #[must_use]
-    pub fn disordered(&self, seed: u64, way_m: f64) -> Self {
+    pub fn disordered(&self, seed: u64) -> Self {
         let mut head = self.clone();
         if self.rigid || seed == 0 {
             return head;
         }
-        let turns = way_m / REGROUPS_M;
-        let (turn, t) = (turns.floor(), (turns - turns.floor()) as f32);
-        let seeds = [0, 1].map(|next| seed ^ ((turn as u64 + next) << 40));
-        let part = t * t * (3.0 - 2.0 * t);
-        let regrouped = |of: &dyn Fn(u64) -> f32| {
-            let [before, after] = seeds.map(of);
-            before + (after - before) * part
-        };
         // The bristles of a pointed brush cling to each other.
         let blunt = self.half_m[STATIONS - 1][0] / self.half_m[0][0];
         let length = self.length_m as f32;
         for (strip, root) in self.roots.iter().enumerate() {
             let place = [root[0] / TRESS, root[1] / TRESS];
-            let [across, aside, along] =
-                PLANES.map(|plane| regrouped(&|seed| noise(seed ^ (plane << 32), place)));
-            let single = regrouped(&|seed| unit(seed, [strip as i64, i64::MAX]));
-            let rim = root[0].abs().max(root[1].abs()).powi(RIM_POWER);
-            let single = single * (1.0 + RIM * rim);
+            let [across, aside, along] = PLANES.map(|plane| noise(seed ^ (plane << 32), place));
+            let single = unit(seed, [strip as i64, i64::MAX]);
             let stray = [across, aside].map(|v| STRAY * (2.0 * v - 1.0));
             let shorter = RAGGED * blunt.min(1.0) * length * 0.5 * (along + single);
             for station in 0..STATIONS {

@@ -70,10 +70,8 @@ pub struct BrushTraits {
 pub struct Seep {
     /// Share of their difference that evens out between strips, above the part held by the yield stress.
     pub beside: f64,
-    /// The same along a strip, where the motion shears it, above the film that clings to it.
+    /// The same along a strip, where the motion shears it.
     pub along: f64,
-    /// Quanta of a texel's film that cling to a strip: they do not flow along it.
-    pub clings: f64,
 }
 
 impl BrushTraits {
@@ -83,10 +81,11 @@ impl BrushTraits {
     const REFILL: f64 = 0.15;
     /// Share of the difference between texels that evens out along a reference cell.
     const CREEP: f64 = 0.03;
-    /// Shares of the difference between films that even out along a reference cell: between strips, and along them.
-    const SEEP: [f64; 2] = [0.4, 0.35];
-    /// Thickness of the film that clings to a strip, µm.
-    const CLINGS_UM: f64 = 0.0;
+    /// Shares of the difference between films that even out along a reference cell.
+    const SEEP: Seep = Seep {
+        beside: 0.4,
+        along: 0.35,
+    };
     /// Difference between the films of two strips that stays, by a full film: so a bristle keeps its streak.
     pub const HOLDS: f64 = 0.3;
 
@@ -136,9 +135,8 @@ impl BrushTraits {
             creep: share(Self::CREEP),
             seep: Seep {
                 // Paint seeps as it diffuses: by the square of the distance, which grows as the root of how many it stands for.
-                beside: part(Self::SEEP[0], flow / file.strips.stands_for),
-                along: share(Self::SEEP[1]),
-                clings: quanta(Self::CLINGS_UM),
+                beside: part(Self::SEEP.beside, flow / file.strips.stands_for),
+                along: share(Self::SEEP.along),
             },
         }
     }
@@ -154,7 +152,7 @@ impl BrushTraits {
     /// The traits of a step doubled a number of times.
     #[must_use]
     pub fn doubled(mut self, doublings: u32) -> Self {
-        let Seep { beside, along, .. } = &mut self.seep;
+        let Seep { beside, along } = &mut self.seep;
         for share in [&mut self.refill, &mut self.creep, beside, along] {
             let rest = (0..doublings).fold(1.0 - *share, |rest, _| rest * rest);
             *share = 1.0 - rest;

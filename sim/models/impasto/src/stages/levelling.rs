@@ -35,7 +35,7 @@ pub const ADVANCES: f32 = 1.0;
 
 /// Largest part of a cell's paint that flows through a face at once.
 const LARGEST_SHARE: f32 = 0.25;
-/// Largest cells of a coarser grid, m: thinned paint drains from ridges a brush's mark apart within the second.
+/// Largest cells of a coarser grid, m: on these and larger ones a second's rounds level all traces of a stroke.
 const COARSEST_M: f64 = 1.25e-4;
 
 /// Rheology of a paint.
@@ -48,8 +48,8 @@ pub struct Body {
 }
 
 impl Body {
-    /// Paint from the tube once the brush has left it: oil colours yield at 50 to 500 Pa at rest (Salvant Plisson et al.
-    /// 2014), and much of the structure that a brush shears apart is back within a tenth of a second.
+    /// Paint from the tube that the brush has just worked: oil colours yield at tens to hundreds of Pa at rest, and at
+    /// a fraction of that while their structure is sheared apart.
     pub const TUBE: Self = Self {
         yield_pa: 12.0,
         viscosity_pa_s: 20.0,

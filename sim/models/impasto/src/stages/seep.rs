@@ -3,8 +3,7 @@
 //!
 //! Only the amount that evens the films out goes over, with the mixture of the fuller one: so the whole head feeds the
 //! bristles that touch, and adjacent colours stay distinct. Between strips the yield stress holds a difference, so that
-//! a fuller bristle paints its streak to the end; along a strip a thin film clings, so that paint that a clean brush
-//! takes up stays near its tips, and the tips of a brush that is painted out starve.
+//! a fuller bristle paints its streak to the end.
 
 use maulstick_num::select::larger;
 use maulstick_num::wide;
@@ -33,7 +32,7 @@ pub fn seep(step: &mut Step<'_>) {
         holds,
         steps,
     );
-    along_strips(films, &mut paints, [seep.along, seep.clings], steps);
+    along_strips(films, &mut paints, seep.along, steps);
 }
 
 wide! {
@@ -93,10 +92,9 @@ wide! {
     fn along_strips(
         films: &mut [u32],
         paints: &mut [PaintOnBrush<'_>],
-        seep: [f64; 2],
+        share: f64,
         steps: u64,
     ) {
-        let [share, clings] = seep;
         let every = BrushTraits::FLOW_STEPS as usize;
         let strips = films.as_chunks_mut::<TEXELS_PER_STRIP>().0.iter_mut().enumerate();
         for (strip, films) in strips.skip(first_of(steps)).step_by(every) {
@@ -106,8 +104,7 @@ wide! {
             let (mut on, mut back, mut falls) = ([0.0; TEXELS_PER_STRIP], [0.0; TEXELS_PER_STRIP], 0.0);
             for k in 0..TEXELS_PER_STRIP - 1 {
                 let own = if k % 2 == first { share } else { 0.0 };
-                let [own_film, next] = [films[k], films[k + 1]].map(|film| larger(f64::from(film), clings));
-                let fall = own_film - next;
+                let fall = f64::from(films[k]) - f64::from(films[k + 1]);
                 on[k] = given(own, fall, films[k]);
                 back[k] = given(own, -fall, films[k + 1]);
                 falls = larger(falls, own * fall.abs());

@@ -4,10 +4,7 @@ use maulstick_canvas::window::{Area, Window};
 use maulstick_impasto::stages::levelling::{Body, Levelling, Round};
 use maulstick_impasto::stages::velocity::Faces;
 
-use crate::scene::{Random, Scene};
-
-/// Side of a cell, m: twice that is larger than the cells of the coarsest grid.
-const CELL_M: f64 = 5.1e-4;
+use crate::scene::{CELL_M, Random, Scene};
 
 /// Surface tension of linseed oil, N/m, and weight of paint of 1,800 kg/m³, N/m³.
 const TENSION: f64 = 0.03;

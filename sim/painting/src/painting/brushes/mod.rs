@@ -22,8 +22,6 @@ use super::backend::deferral::Deferral;
 use crate::brush_colour::Carried;
 use crate::error::BrushError;
 
-/// Way of a stroke from one regrouping of its bristles to the next, m: they move by less than a cell in it.
-const REGROUP_M: f64 = 0.2e-3;
 /// Bits of a seed.
 const SEEDS: u64 = 0x7fff_ffff;
 
@@ -57,8 +55,6 @@ pub(crate) struct PaintingBrush {
     pub(crate) strokes: usize,
     /// Seed of the disorder of its bristles.
     pub(crate) seed: u64,
-    /// Way of its newest stroke, m.
-    pub(crate) way_m: f64,
     /// Surface under it at its newest step.
     pub(crate) under: UnderBrush,
     /// Progress of its deferred steps.
@@ -84,7 +80,6 @@ impl PaintingBrush {
             loads: Vec::new(),
             strokes: 0,
             seed: 0,
-            way_m: 0.0,
             under: UnderBrush::default(),
             deferral: Deferral::default(),
         }
@@ -124,23 +119,8 @@ impl PaintingBrush {
     /// Disorders its bristles for the painting's stroke with this number.
     pub(crate) fn disorder(&mut self, stroke: u64) {
         self.seed = seed_of(stroke);
-        self.way_m = 0.0;
         self.head = self.disordered();
         Arc::make_mut(&mut self.load).disorder(self.seed);
-    }
-
-    /// Regroups its bristles if it has gone on far enough since they had regrouped so many times; true if it has.
-    pub(crate) fn regroup(&mut self, before: f64) -> bool {
-        let is_due = self.regroupings() > before;
-        if is_due {
-            self.head = self.disordered();
-        }
-        is_due
-    }
-
-    /// Number of times that its bristles have regrouped in its stroke.
-    pub(crate) fn regroupings(&self) -> f64 {
-        (self.way_m / REGROUP_M).floor()
     }
 
     /// Thins it to the strips that cells of `cell_m` can resolve.
@@ -162,10 +142,7 @@ impl PaintingBrush {
 
     /// The head with its bristles disordered by its seed.
     pub(crate) fn disordered(&self) -> Arc<Head> {
-        Arc::new(
-            self.tidy
-                .disordered(self.seed, self.regroupings() * REGROUP_M),
-        )
+        Arc::new(self.tidy.disordered(self.seed))
     }
 
     /// The page of its load; a new one where the load has changed since the last.

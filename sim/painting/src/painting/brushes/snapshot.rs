@@ -38,7 +38,6 @@ impl Brushes {
                 loads: brush.loads.clone(),
                 strokes: brush.strokes,
                 seed: brush.seed,
-                way_m: brush.way_m,
             };
             (brush.name.clone(), kept)
         });
@@ -73,7 +72,7 @@ impl PaintingBrush {
         })?;
         let mut brush = Self::new(&name, file, surfaces.cell_m());
         (brush.stroke, brush.strokes, brush.loads) = (kept.stroke, kept.strokes, kept.loads);
-        (brush.seed, brush.way_m) = (kept.seed, kept.way_m);
+        brush.seed = kept.seed;
         if let Some(page) = page {
             let load = page.get();
             if load.texels() > 0 {

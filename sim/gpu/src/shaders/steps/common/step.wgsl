@@ -86,11 +86,8 @@ struct Step {
     // Share of the difference between films that evens out in FLOW_STEPS, between strips and along them.
     seep_beside: f32,
     seep_along: f32,
-    // Quanta of a texel's film that cling to a strip.
-    clings: f32,
     // Number of parts in which paint moves, which the host dispatches; padding, so that records lie 256 bytes apart.
-    parts: u32,
-    room: vec2<u32>,
+    parts: vec4<u32>,
 }
 
 // A cell in contact.

@@ -1,15 +1,12 @@
 // Requests of each cell to its texel, and offers to it (Baxter 2004, Algorithm 3, by path length), summed by texel.
 
 // Constants of transfer.rs in maulstick-impasto.
-override SKIN: f32;
-override NEAR: f32;
+override SWAP_FILM: f32;
 override POOL: f32;
 
-// Share of a gap that fills where `share` of a difference evens out: 1 − (1 − share)⁶⁴.
+// Share of a gap that fills where `share` of a difference evens out: 1 − (1 − share)¹⁶.
 fn filled(share: f32) -> f32 {
     var kept = (1.0 - share) * (1.0 - share);
-    kept *= kept;
-    kept *= kept;
     kept *= kept;
     kept *= kept;
     return 1.0 - kept * kept;
@@ -47,8 +44,7 @@ fn exchange_ask(@builtin(global_invocation_id) id: vec3<u32>) {
     if step.transfer != MARKER {
         let share = 1.0 - decay(step.ln_kept * travel);
         net = transfer(on_brush, on_canvas, lies, gap, share, travel);
-        let skin = min(min(max(on_brush - gap, 0.0), lies), SKIN);
-        swap = min(step.swap * travel * (NEAR / (NEAR + gap)), 1.0) * skin;
+        swap = step.swap * share * min(min(on_brush, on_canvas), SWAP_FILM);
     }
     let quanta = contact.cover * QUANTA_PER_UNIT;
     let pool = min(gap * QUANTA_PER_UNIT, POOL * step.most);

@@ -79,7 +79,7 @@ impl Stroke<'_> {
             self.thin();
         }
         let waypoint = Waypoint::of(solve, scale, self.seen_fullness());
-        let (head, before) = (Arc::clone(&self.brush().head), self.brush().regroupings());
+        let head = Arc::clone(&self.brush().head);
         let path = if let Some((_, mut path)) = running {
             let to = (waypoint, solve.doublings());
             path.advance(&head, to, |sweep, doublings| self.step(sweep, doublings));
@@ -92,13 +92,7 @@ impl Stroke<'_> {
         } else {
             PathStepper::begin(&head, waypoint, scale)
         };
-        let own = self.brush_mut();
-        let path = if own.regroup(before) {
-            path.regrouped(&own.head)
-        } else {
-            path
-        };
-        own.path = Some((surface, path));
+        self.brush_mut().path = Some((surface, path));
         Ok(())
     }
 
@@ -152,8 +146,7 @@ impl Stroke<'_> {
 
     /// Steps the rest of the brush's path.
     pub(super) fn finish(&mut self, mut path: PathStepper) {
-        let (head, before) = (Arc::clone(&self.brush().head), self.brush().regroupings());
+        let head = Arc::clone(&self.brush().head);
         path.end(&head, |sweep, doublings| self.step(sweep, doublings));
-        self.brush_mut().regroup(before);
     }
 }
