@@ -1,51 +1,58 @@
-//! Rows of reading distance whose names begin with a word, case by case: `rows carry 0.125 0`.
+//! Rows of reading distance whose names contain a word, case by case, in all cases or in those of one side of a cell,
+//! mm, and one heading, degrees: `rows carry 0.125 0`.
 
 use maulstick_looks::marks::Painter;
-use maulstick_looks::reading::{ALL, case::CASES};
+use maulstick_looks::reading::case::{CASES, Case};
+use maulstick_looks::reading::{ALL, Readings};
+use maulstick_rig::UserError;
 
-fn main() -> Result<(), maulstick_rig::UserError> {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let number = |i: usize| words.get(i).and_then(|word| word.parse::<f64>().ok());
-    if words.first().is_some_and(|word| word == "marks") {
-        let trial = maulstick_looks::marks::Trial {
-            cell_mm: 0.125,
-            painter: Painter::Able,
+/// A number of the command line, if it is given.
+fn number(word: Option<&String>) -> Result<Option<f64>, UserError> {
+    let read = |word: &String| word.parse::<f64>();
+    let number = word.map(read).transpose();
+    number.map_err(|_| UserError::usage("rows [NAME [CELL_MM [HEADING_DEG]]]"))
+}
+
+/// Prints the rows of one case; those that miss their bound with a star.
+fn print(own: &Readings, case: Case) -> Result<(), UserError> {
+    println!(
+        "{} mm, {}°, size {}, {}",
+        case.cell_mm, case.heading_deg, case.size, case.paints[0]
+    );
+    for (name, value) in (own.read)(case, Painter::Able)? {
+        let row = own.rows.iter().find(|(own, ..)| *own == name);
+        let Some((_, unit, bound)) = row else {
+            continue;
         };
-        for measure in maulstick_looks::marks::ALL {
-            for (name, value, unit) in measure(trial)? {
-                println!("{name} {value:.3} {unit}");
-            }
-        }
+        let says = if bound.keeps(value) { " " } else { "*" };
+        println!("{says} {name:28} {value:9.4} {unit:3} {bound:?}");
     }
+    Ok(())
+}
+
+fn main() -> Result<(), UserError> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let (cell_mm, heading_deg) = (number(words.get(1))?, number(words.get(2))?);
+    let part = words.first().map_or("", String::as_str);
+    let is_meant = |case: &Case| {
+        cell_mm.is_none_or(|cell_mm| cell_mm == case.cell_mm)
+            && heading_deg.is_none_or(|heading_deg| heading_deg == case.heading_deg)
+    };
+    let mut printed = 0;
     for own in ALL {
-        if words.first().is_some_and(|word| {
-            !own.rows
-                .iter()
-                .any(|(name, ..)| name.contains(word.as_str()))
-        }) {
+        if !own.rows.iter().any(|(name, ..)| name.contains(part)) {
             continue;
         }
-        for case in CASES {
-            let is_meant = number(1).is_none_or(|cell| cell == case.cell_mm)
-                && number(2).is_none_or(|heading| heading == case.heading_deg)
-                && number(3).is_none_or(|size| size == case.size)
-                && number(4).is_none_or(|paint| CASES[6 * paint as usize].paints == case.paints);
-            if !is_meant || !(own.shows)(&case) {
-                continue;
-            }
-            println!(
-                "{} mm, {}°, size {}, {}",
-                case.cell_mm, case.heading_deg, case.size, case.paints[0]
-            );
-            for (name, value) in (own.read)(case, Painter::Able)? {
-                let row = own.rows.iter().find(|(own, ..)| *own == name);
-                let Some((_, unit, bound)) = row else {
-                    continue;
-                };
-                let says = if bound.keeps(value) { " " } else { "*" };
-                println!("{says} {name:28} {value:9.4} {unit:3} {bound:?}");
-            }
+        for case in CASES
+            .iter()
+            .filter(|case| is_meant(case) && (own.shows)(case))
+        {
+            print(own, *case)?;
+            printed += 1;
         }
+    }
+    if printed == 0 {
+        return Err(UserError::usage("no row and case are called so"));
     }
     Ok(())
 }

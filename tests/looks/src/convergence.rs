@@ -4,16 +4,15 @@
 //! summed over octaves of wavelength, along the stroke and across it, from two of the coarser cells up to a quarter of
 //! the measured part.
 
-use std::f64::consts::TAU;
 use std::ops::Range;
 
-use maulstick_num::{cos, sin};
 use maulstick_rig::UserError;
 
 use crate::Row;
 use crate::easel::{Easel, Stroke, brush};
 use crate::map::Map;
 use crate::marks::Painter;
+use crate::reading::spectrum::power;
 
 /// Sides of the cells, mm, each half of the last.
 const CELLS_MM: [f64; 3] = [0.25, 0.125, 0.0625];
@@ -114,42 +113,23 @@ fn halved(map: &Map) -> Map {
 /// Power along an axis in each octave of wavelength, from two cells on: the sum over its lines.
 fn octaves(map: &Map, axis: usize) -> Vec<f64> {
     let length = map.size[axis];
-    let (step, next) = [(1, map.size[0]), (map.size[0], 1)][axis];
     // Waves of the whole length, of half of it, and so on, within an octave.
     let octave = |number: u32| -> Range<usize> {
         let most = (length / 2) >> number;
         most / 2 + 1..most + 1
     };
     let bands = (0..).map(octave).take_while(|band| band.start > 3);
-    let line = |number: usize| -> Vec<f64> {
-        let cells = (0..length).map(|k| f64::from(map.cells[number * next + k * step]));
-        let mean = cells.clone().sum::<f64>() / length as f64;
-        let hann = |k: usize| 0.5 - 0.5 * cos(TAU * (k as f64 + 0.5) / length as f64);
-        cells
-            .enumerate()
-            .map(|(k, value)| (value - mean) * hann(k))
-            .collect()
-    };
-    let lines: Vec<Vec<f64>> = (0..map.size[1 - axis]).map(line).collect();
-    let power = |wave: usize| -> f64 {
-        let turns = (0..length).map(|k| TAU * (wave * k % length) as f64 / length as f64);
-        let turns: Vec<[f64; 2]> = turns.map(|turn| [cos(turn), sin(turn)]).collect();
-        let of = |line: &Vec<f64>| {
-            let part = |i: usize| -> f64 {
-                line.iter()
-                    .zip(&turns)
-                    .map(|(value, turn)| value * turn[i])
-                    .sum()
-            };
-            part(0) * part(0) + part(1) * part(1)
-        };
-        lines.iter().map(of).sum()
-    };
-    bands.map(|band| band.map(power).sum()).collect()
+    bands
+        .map(|band| power(map, axis, band).iter().sum())
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
+    use maulstick_num::sin;
+
     use super::*;
 
     /// A relief of one wavelength along x, mm.

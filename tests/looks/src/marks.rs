@@ -7,6 +7,7 @@ use maulstick_types::values::FilmThickness;
 
 use crate::easel::{Easel, Stroke, brush};
 use crate::map::{Map, correlation, slope};
+use crate::reading::colour::streaks;
 
 /// Name, value, unit.
 pub type Number = (&'static str, f64, &'static str);
@@ -352,20 +353,9 @@ pub fn through_wet(trial: Trial) -> Result<Vec<Number>, UserError> {
     let part = ([38.0, 21.0], [50.0, 29.0]);
     let blue = easel.film(Some(0)).cut(part.0, part.1);
     let white = easel.film(Some(1)).cut(part.0, part.1);
-    let shares: Vec<f64> = (blue.profile(1).iter().zip(white.profile(1)))
-        .map(|(blue, white)| blue / (blue + white))
-        .collect();
-    // Streaks of .25 to 1.5 mm: shares less their running mean over 1.5 mm.
-    let half = ((0.75 / trial.cell_mm).round() as usize).max(1);
-    let (mut sum, mut count) = (0.0, 0.0);
-    for k in half..shares.len() - half {
-        let mean = shares[k - half..=k + half].iter().sum::<f64>() / (2 * half + 1) as f64;
-        sum += (shares[k] - mean) * (shares[k] - mean);
-        count += 1.0;
-    }
-    let m = shares.iter().sum::<f64>() / shares.len() as f64;
+    let share = blue.mean() / (blue.mean() + white.mean());
     Ok(vec![
-        ("through_wet.blue", m, ""),
-        ("through_wet.streaks", sum / count / (m * (1.0 - m)), ""),
+        ("through_wet.blue", share, ""),
+        ("through_wet.streaks", streaks(&blue, &white), ""),
     ])
 }

@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::marks::{self, Measure, Painter, Trial};
+use super::reading::{self, Bound, Readings, case::CASES};
 
 const ANY: f64 = f64::INFINITY;
 
@@ -90,6 +91,36 @@ fn loads_of_their_own_have_streaks_of_their_own() {
 #[test]
 fn white_through_wet_blue_keeps_its_streaks() {
     holds(marks::through_wet, &[("through_wet.streaks", 0.03..=1.0)]);
+}
+
+/// The worst that a painter shows of each row in the first case that shows it, with its bound.
+fn read(own: &Readings, painter: Painter) -> Vec<(&'static str, f64, Bound)> {
+    let case = CASES.iter().find(|case| (own.shows)(case)).expect("a case");
+    let found = (own.read)(*case, painter).expect("painted");
+    let rows = found.into_iter().map(|(name, value)| {
+        let row = own.rows.iter().find(|(row, ..)| *row == name);
+        (name, value, row.expect("bounded").2)
+    });
+    rows.collect()
+}
+
+#[test]
+fn each_row_of_reading_distance_has_a_fault_that_breaks_it() {
+    for own in reading::ALL {
+        let faulty = read(own, Painter::Faulty);
+        println!("{faulty:?}");
+        let is_told = faulty.iter().any(|(_, value, bound)| !bound.keeps(*value));
+        assert!(is_told, "a fault passes: {faulty:?}");
+    }
+}
+
+/// Each step of a script has streaks of its own; the first strokes of two paintings have the same.
+#[test]
+fn strokes_of_a_script_are_not_alike() {
+    let likest = |painter| read(&reading::skin::VARIETY, painter)[0].1;
+    let (able, faulty) = (likest(Painter::Able), likest(Painter::Faulty));
+    println!("likest of six {able:.3}, of six first strokes {faulty:.3}");
+    assert!(able < 0.9 && faulty > 0.95, "{able} {faulty}");
 }
 
 /// The track of a knife is smooth; ripples of half a millimetre would be detected.

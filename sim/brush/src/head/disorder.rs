@@ -1,5 +1,4 @@
-//! Disorder of the bristles. It changes each time a brush is loaded, so that no two strokes have the same streaks or
-//! ends.
+//! Disorder of the bristles. It changes with each stroke, so that no two have the same streaks or ends.
 
 use super::{Head, STATIONS, place_along, smoothstep};
 

@@ -1,7 +1,7 @@
 //! Streaks: variation of the paint that bristles take up, so that no two loads paint the same stroke.
 //!
 //! A bristle's share is part its own (its place and kind, from the brush file), part random: patches of good and bad
-//! contact with the heap, and single bristles. The seed is the painting's number of steps, which is in the journal.
+//! contact with the heap, and single bristles. The seed is the painting's number of strokes.
 
 use maulstick_brush::Head;
 use maulstick_brush::head::disorder::{noise, unit};

@@ -15,7 +15,7 @@ fn mean_share(own: &Map, other: &Map) -> f64 {
 }
 
 /// Variation across of the share of a paint, waves below 1.5 mm, by the most that it could be.
-fn streaks(own: &Map, other: &Map) -> f64 {
+pub(crate) fn streaks(own: &Map, other: &Map) -> f64 {
     let shares: Vec<f64> = (own.profile(1).iter().zip(other.profile(1)))
         .map(|(own, other)| own / (own + other).max(1e-9))
         .collect();

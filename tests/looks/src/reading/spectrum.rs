@@ -21,7 +21,7 @@ fn lines(map: &Map, axis: usize) -> Vec<Vec<f64>> {
 }
 
 /// Mean power of the lines along an axis at each of these whole numbers of waves: the squares of the values' shares.
-fn power(map: &Map, axis: usize, waves: impl Iterator<Item = usize>) -> Vec<f64> {
+pub(crate) fn power(map: &Map, axis: usize, waves: impl Iterator<Item = usize>) -> Vec<f64> {
     let (lines, length) = (lines(map, axis), map.size[axis]);
     // A Hann window leaves 3/8 of the power.
     let scale = 2.0 / (0.375 * (length * length) as f64 * lines.len().max(1) as f64);
