@@ -1,6 +1,8 @@
 //! Rows of reading distance whose names contain a word, case by case, in all cases or in those of one side of a cell,
 //! mm, and one heading, degrees: `rows carry 0.125 0`.
 
+use std::process::ExitCode;
+
 use maulstick_looks::marks::Painter;
 use maulstick_looks::reading::case::{CASES, Case};
 use maulstick_looks::reading::{ALL, Readings};
@@ -30,7 +32,17 @@ fn print(own: &Readings, case: Case) -> Result<(), UserError> {
     Ok(())
 }
 
-fn main() -> Result<(), UserError> {
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("rows: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run() -> Result<(), UserError> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let (cell_mm, heading_deg) = (number(words.get(1))?, number(words.get(2))?);
     let part = words.first().map_or("", String::as_str);
