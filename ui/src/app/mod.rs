@@ -249,11 +249,6 @@ impl eframe::App for App {
         if ends {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         }
-        let is_asked = context.input(|input| input.viewport().close_requested());
-        if is_asked && !ends && !self.overlay.may_close(&self.studio.rig) {
-            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            context.request_repaint();
-        }
         presses::return_keyboard(context);
         let path = self.pointer(context);
         let now_ns = self.connection.bus.now_ns();
@@ -261,6 +256,12 @@ impl eframe::App for App {
         self.hands.send(context, &path, view, (now_ns, studio));
         // After the mouse has sent its position: its brush is drawn there.
         self.drain(now_ns);
+        // The newest status has been read: it may say that there is something to lose.
+        let is_asked = context.input(|input| input.viewport().close_requested());
+        if is_asked && !ends && !self.overlay.may_close(&self.studio.rig) {
+            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            context.request_repaint();
+        }
         let brush = self.studio.rig.brush_name();
         self.studio.rig.contact = self.hands.contact(&self.connection.tracker, brush);
         self.send(context);
