@@ -3,13 +3,15 @@
 mod easel;
 mod studio;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use easel::Easel;
 use maulstick_document::tables::schema::VERSION;
 use maulstick_document::{Access, Document, DocumentSettings, DocumentStats};
 use maulstick_painting::edits::Undo;
-use maulstick_painting::sequencer::Accepted;
+use maulstick_painting::history::TilePlace;
+use maulstick_painting::sequencer::{Accepted, Sequencer};
 use maulstick_types::paint::{Decision, Entry, StepName};
 use studio::tiles;
 
@@ -24,7 +26,7 @@ fn unpacked(folder: &Path) -> PathBuf {
     path
 }
 
-/// Decisions of its record, and true if the record gives its tiles.
+/// Decisions of its record, and true if the record paints on the tiles that it had: bristles stray in another way since.
 fn record(path: &Path) -> (Vec<Decision>, bool) {
     let settings = DocumentSettings::new(path, Access::Read);
     let (document, opened) = Document::open(&settings).expect("opened");
@@ -43,7 +45,11 @@ fn record(path: &Path) -> (Vec<Decision>, bool) {
     drop(document);
     let (_document, opened) = Document::open(&settings).expect("opened");
     let opened = opened.expect("a painting");
-    let is_same = tiles(&mut again) == tiles(&mut opened.sequencer().expect("whole"));
+    let painted = |sequencer: &mut Sequencer| -> BTreeSet<TilePlace> {
+        assert_eq!(sequencer.painting_mut().report().quanta_missing, 0);
+        tiles(sequencer).into_keys().collect()
+    };
+    let is_same = painted(&mut again) == painted(&mut opened.sequencer().expect("whole"));
     (decisions, is_same)
 }
 

@@ -86,6 +86,13 @@ impl PathStepper {
         }
     }
 
+    /// This path of a head whose bristles have regrouped.
+    #[must_use]
+    pub fn regrouped(self, head: &Head) -> Self {
+        let before = self.before.map(|(place, _)| place);
+        Self::going_on(head, (self.at, self.ahead, before), self.scale)
+    }
+
     /// Position of the last step, the position since, and that of the step before.
     #[must_use]
     pub fn places(&self) -> (&Waypoint, Option<&Waypoint>, Option<&Waypoint>) {

@@ -21,7 +21,7 @@ pub struct Exchanging {
     pub evens: f32,
     /// The most that goes over along a reference cell, units.
     pub most: f32,
-    /// Share of the thinner film that changes places along a reference cell, by that which goes over.
+    /// Share of a skin ([`SKIN`]) that changes places along a reference cell without a gap, where both sides are wet.
     pub swap: f32,
 }
 
@@ -31,11 +31,12 @@ impl Exchanging {
         ln_kept: LN_KEPT,
         evens: 1.0,
         most: MAX_TRANSFER,
-        swap: 0.03,
+        swap: 1.8,
     };
     /// Soft hair that flares: it hardly takes paint up, and blends the paint that it moves through.
     pub(crate) const BLENDER: Self = Self {
-        swap: 0.3,
+        swap: 0.05,
+        most: 0.0004,
         ..Self::BRISTLES
     };
     /// A blade: it scrapes off paint above its edge, and fills hollows below it; ln(1 − .6).
@@ -43,7 +44,7 @@ impl Exchanging {
         ln_kept: -0.916_290_7,
         evens: 0.0,
         most: 1.0,
-        swap: 0.03,
+        swap: 0.01,
     };
 
     /// Share of the paint that goes over along a travel in reference cells.
@@ -59,8 +60,8 @@ impl Exchanging {
     ///
     /// The text's EQUAL_PAINT_CUTOFF is a constant of 833 µm, which makes films of oil (80 to 420 µm) go over by their
     /// square. Here it is the donor's amount: the difference evens out, whatever the scale. A gap fills faster with the
-    /// excess beyond it, because the film is pressed into it; but a film that bridges the gap under a bristle splits in
-    /// its middle as the bristle lifts off.
+    /// excess beyond it, because the film is pressed into it; but a film that bridges the gap under a bristle splits as
+    /// the bristle lifts off, which keeps [`SPLITS`] of it.
     #[must_use]
     #[inline(always)]
     pub fn transfer(
@@ -70,7 +71,7 @@ impl Exchanging {
         share: f32,
     ) -> f32 {
         let free = (on_brush - gap).max(0.0);
-        let splits = (on_brush - self.evens * 0.5 * (on_brush + lying)).max(0.0);
+        let splits = (on_brush - self.evens * SPLITS * (on_brush + lying)).max(0.0);
         let fill = filled(share) * gap.min(free).min(splits);
         let difference = self.evens * free - on_canvas;
         let donor = if difference > 0.0 {
@@ -84,12 +85,14 @@ impl Exchanging {
         fill + if difference > 0.0 { amount } else { -amount }
     }
 
-    /// Paint that is swapped where brush and canvas are wet, units: their films mix as the bristles move through them,
-    /// but no deeper than a film, whatever the height of the paint.
+    /// Paint that is swapped along a travel where brush and canvas are wet, units: where their films touch, across
+    /// `gap`, a bristle and the paint under it shear a skin between them, whatever lies beyond it on either side; the
+    /// wider the gap, the less.
     #[must_use]
     #[inline(always)]
-    pub fn swapped(&self, on_brush: f32, on_canvas: f32, share: f32) -> f32 {
-        self.swap * share * on_brush.min(on_canvas).min(SWAP_FILM)
+    pub fn swapped(&self, [on_brush, lying, gap]: [f32; 3], travel: f32) -> f32 {
+        let skin = (on_brush - gap).max(0.0).min(lying).min(SKIN);
+        (self.swap * travel * (NEAR / (NEAR + gap))).min(1.0) * skin
     }
 }
 
@@ -102,8 +105,13 @@ fn filled(share: f32) -> f32 {
     1.0 - kept * kept
 }
 
-/// Depth of the films that are swapped, units: 100 µm.
-pub const SWAP_FILM: f32 = 0.004;
+/// Share of a film bridging a gap that stays on the bristle as it splits.
+pub const SPLITS: f32 = 0.3;
+
+/// Thickness of the skin of a bristle that is exchanged with the paint under it, units: 70 µm.
+pub const SKIN: f32 = 0.0028;
+/// Gap at which half as much is sheared as where bristle and surface touch, units: 15 µm.
+pub const NEAR: f32 = 0.0006;
 
 /// Additional deposit of a film-limited brush in the hollows under its bristles, in multiples of its film: thin paint
 /// is dragged off the ridges and gathers there.
@@ -142,7 +150,7 @@ mod tests {
             let rule = Exchanging::BRISTLES;
             let over = |s: f32| rule.transfer([a_b, a_c, a_c, 0.0], s, rule.share(s)).abs();
             prop_assert_eq!(over(0.0), 0.0);
-            prop_assert_eq!(rule.swapped(a_b, a_c, rule.share(0.0)), 0.0);
+            prop_assert_eq!(rule.swapped([a_b, a_c, 0.0], 0.0), 0.0);
             let (less, more) = (over(s), over(1.0));
             prop_assert!(less <= more + 1e-9);
             prop_assert!(less <= a_b.max(a_c));

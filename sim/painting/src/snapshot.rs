@@ -32,6 +32,9 @@ pub struct BrushSnapshot {
     pub strokes: usize,
     /// Seed of the disorder of its bristles.
     pub seed: u64,
+    /// Way of its newest stroke, and where on it its bristles have regrouped last, m.
+    #[serde(default)]
+    pub way_m: [f64; 2],
 }
 
 /// A step that is not finished.

@@ -1,33 +1,90 @@
-//! Disorder of the bristles. It changes with each stroke, so that no two have the same streaks or ends.
+//! Disorder of the bristles. It changes with each stroke, so that no two have the same streaks or ends, and along it:
+//! tresses part and regroup within some centimetres, so that no streak goes on to the end.
 
 use super::{Head, STATIONS, place_along, smoothstep};
+use crate::file::BrushFile;
+use crate::file::sections::Hair;
 
 /// Width of a tress of bristles that stray together, by half the head's width.
 const TRESS: f32 = 0.16;
-/// Greatest offset of a tress, by half the head's width and thickness there.
-const STRAY: f32 = 0.04;
-/// Shortening of the shortest bristle, by the head's length.
-const RAGGED: f32 = 0.01;
+/// Greatest offset of a tress of hog bristles and of soft hair, by half the head's width and thickness there.
+const STRAY: [f32; 2] = [0.08, 0.015];
+/// Shortening of the shortest bristle of hog and of soft hair, by the head's length.
+const RAGGED: [f64; 2] = [0.02, 0.006];
+/// Additional shortening of a single bristle at the rim, by its own.
+const RIM: f32 = 4.0;
+/// Power of the place from the middle to the rim by which that grows.
+const RIM_POWER: i32 = 8;
+/// Way along which tresses regroup, m.
+const REGROUPS_M: f64 = 25e-3;
 /// Numbers of the planes of noise: across the width, across the thickness, along.
 const PLANES: [u64; 3] = [11, 12, 13];
 
+/// How far the strips of a head stray.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Straying {
+    /// True for a blade, whose strips never shift.
+    pub(super) rigid: bool,
+    /// Share of the chance of a single bristle that a strip has, which stands for several.
+    singly: f32,
+    /// Greatest offset of a tress, by half the head's width and thickness there.
+    stray: f32,
+    /// Shortening of the shortest bristle, m.
+    ragged_m: f32,
+}
+
+impl Straying {
+    pub(super) fn of(file: &BrushFile) -> Self {
+        let soft = usize::from(file.head.hair != Hair::Hog);
+        // The bristles of a pointed brush cling to each other.
+        let blunt = (file.radius_m(1.0) / file.radius_m(0.0)).min(1.0);
+        Self {
+            rigid: file.head.hair == Hair::Steel,
+            singly: (1.0 / file.strips.stands_for) as f32,
+            stray: STRAY[soft],
+            ragged_m: (RAGGED[soft] * blunt * file.length_m()) as f32,
+        }
+    }
+}
+
 impl Head {
-    /// This head with its bristles in the disorder of a seed; seed 0 leaves them as in the brush file.
+    /// Share of the chance of a single bristle that one of its strips has, which stands for several.
     #[must_use]
-    pub fn disordered(&self, seed: u64) -> Self {
+    pub fn singly(&self) -> f32 {
+        self.straying.singly
+    }
+
+    /// This head with its bristles in the disorder of a seed, after a way of the stroke in m; seed 0 leaves them as in
+    /// the brush file.
+    #[must_use]
+    pub fn disordered(&self, seed: u64, way_m: f64) -> Self {
         let mut head = self.clone();
-        if self.rigid || seed == 0 {
+        let Straying {
+            rigid,
+            singly,
+            stray,
+            ragged_m,
+        } = self.straying;
+        if rigid || seed == 0 {
             return head;
         }
-        // The bristles of a pointed brush cling to each other.
-        let blunt = self.half_m[STATIONS - 1][0] / self.half_m[0][0];
-        let length = self.length_m as f32;
+        let turns = way_m / REGROUPS_M;
+        let (turn, t) = (turns.floor(), (turns - turns.floor()) as f32);
+        let seeds = [0, 1].map(|next| seed ^ ((turn as u64 + next) << 40));
+        let part = t * t * (3.0 - 2.0 * t);
+        let regrouped = |of: &dyn Fn(u64) -> f32| {
+            let [before, after] = seeds.map(of);
+            before + (after - before) * part
+        };
         for (strip, root) in self.roots.iter().enumerate() {
             let place = [root[0] / TRESS, root[1] / TRESS];
-            let [across, aside, along] = PLANES.map(|plane| noise(seed ^ (plane << 32), place));
-            let single = unit(seed, [strip as i64, i64::MAX]);
-            let stray = [across, aside].map(|v| STRAY * (2.0 * v - 1.0));
-            let shorter = RAGGED * blunt.min(1.0) * length * 0.5 * (along + single);
+            let [across, aside, along] =
+                PLANES.map(|plane| regrouped(&|seed| noise(seed ^ (plane << 32), place)));
+            let single = regrouped(&|seed| unit(seed, [strip as i64, i64::MAX]));
+            let rim = root[0].abs().max(root[1].abs()).powi(RIM_POWER);
+            let single = (0.5 + singly * (single - 0.5)) * (1.0 + RIM * rim);
+            let stray = [across, aside].map(|v| stray * (2.0 * v - 1.0));
+            let shorter = ragged_m * 0.5 * (along + single);
             for station in 0..STATIONS {
                 let at = place_along(station);
                 let bent = smoothstep(at) as f32;

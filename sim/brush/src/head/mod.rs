@@ -18,6 +18,7 @@ use maulstick_num::atan2;
 use maulstick_num::geometry::{Rigid, shortest_arc};
 
 use self::curve::{Curve, curve, middle};
+use self::disorder::Straying;
 use self::lay::{add_weighted, turn_offsets};
 use self::place::Random;
 use self::weights::{nearest_in_hull, weights_of};
@@ -62,8 +63,7 @@ pub struct Head {
     rest: Curve,
     skin: Option<Skin>,
     length_m: f64,
-    /// True for a blade, whose strips never shift.
-    rigid: bool,
+    straying: Straying,
     /// Half the width and thickness at each station, m.
     half_m: [[f32; 2]; STATIONS],
 }
@@ -165,7 +165,7 @@ impl Head {
             rest,
             skin: Skin::of(file, &tuft),
             length_m: file.length_m(),
-            rigid,
+            straying: Straying::of(file),
             half_m: std::array::from_fn(|station| {
                 let at = place_along(station);
                 [file.radius_m(at), file.half_thickness_m(at)].map(|half| half as f32)
@@ -265,7 +265,7 @@ impl Head {
     /// True for a blade, or for a skin that comes to a point.
     #[must_use]
     pub fn is_fine(&self) -> bool {
-        self.rigid || self.skin.is_some()
+        self.straying.rigid || self.skin.is_some()
     }
 
     /// The skin, if it has one.

@@ -58,6 +58,11 @@ const KINDS: [Kind; 4] = [
     },
 ];
 
+/// Distance of the samples of a cell, m: a coarse one has the mean of its tooth, as paint sees it.
+const SAMPLED_M: f64 = 0.125e-3;
+/// Number of samples of a cell at most.
+const SAMPLES_MOST: u32 = 16;
+
 /// The tooth of one surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tooth {
@@ -89,17 +94,28 @@ impl Tooth {
         [self.kind.depth_m, wide]
     }
 
-    /// Heights of a tile's cells, m, row after row from the bottom.
+    /// Heights of a tile's cells, m, row after row from the bottom: means of samples, of which no two stand in one row
+    /// or column of a cell.
     #[must_use]
     pub fn tile(&self, id: TileId) -> Box<[f32]> {
+        let count = (self.cell_m / SAMPLED_M).ceil() as u32;
+        let count = count.next_power_of_two().min(SAMPLES_MOST);
+        let samples = f64::from(count);
+        let share = |of: u32| f64::from(of) / 4_294_967_296.0 + 0.5 / samples;
+        let rooks: Vec<[f64; 2]> = (0..count)
+            .map(|i| [(f64::from(i) + 0.5) / samples, share(i.reverse_bits())])
+            .collect();
         let mut heights = Vec::with_capacity(TILE_CELLS);
         for y in 0..TILE {
             for x in 0..TILE {
-                let at = [
-                    (f64::from(id.x) * TILE as f64 + x as f64 + 0.5) * self.cell_m,
-                    (f64::from(id.y) * TILE as f64 + y as f64 + 0.5) * self.cell_m,
+                let corner = [
+                    f64::from(id.x) * TILE as f64 + x as f64,
+                    f64::from(id.y) * TILE as f64 + y as f64,
                 ];
-                heights.push(self.height_m(at) as f32);
+                let sum: f64 = (rooks.iter())
+                    .map(|rook| self.height_m([0, 1].map(|i| (corner[i] + rook[i]) * self.cell_m)))
+                    .sum();
+                heights.push((sum / samples) as f32);
             }
         }
         heights.into_boxed_slice()

@@ -11,6 +11,11 @@ use super::lattice_noise::{LatticeNoise, ease};
 const UNEVEN: f64 = 0.26;
 /// Common wander of all threads.
 const WANDER: f64 = 0.3;
+/// Sine and cosine of the angle of the threads against the cells: 4°.
+const TURNED: [f64; 2] = [0.069_756_474, 0.997_564_05];
+/// Drift of the threads, in thread spacings, and its waves, a thread spacing across and along.
+const DRIFT: f64 = 4.0;
+const DRIFT_WAVES: [f64; 2] = [0.05, 0.02];
 /// Extra width of a thread at its slub.
 const SLUB_WIDTH: f64 = 0.34;
 /// Length of a slub with the thin stretch to the next, in thread spacings.
@@ -50,6 +55,7 @@ impl Weave {
     /// Height at a place, about 0 to 1.
     pub(crate) fn height(&self, [x, y]: [f64; 2]) -> f64 {
         let noise = &self.noise;
+        let [x, y] = self.laid([x, y]);
         let wander = |axis: u64, along: f64, across: f64| {
             WANDER * (noise.at(axis, [0.31 * across, 0.11 * along]) - 0.5)
         };
@@ -66,6 +72,18 @@ impl Weave {
         let grain = noise.at(5, [3.1 * x, 3.1 * y]) - 0.5;
         let level = GESSO[0] + 2.0 * GESSO[1] * (noise.at(6, [0.23 * x, 0.23 * y]) - 0.5);
         smooth_max(top + 0.05 * grain, level + 0.03 * grain, MENISCUS)
+    }
+
+    /// A place in threads: the weave lies some degrees off the cells, and its threads run closer here and wider there,
+    /// so that nothing repeats at their mean spacing.
+    fn laid(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [sine, cosine] = TURNED;
+        let [x, y] = [x * cosine - y * sine, x * sine + y * cosine];
+        let drift = |axis: u64, along: f64, across: f64| {
+            let place = [DRIFT_WAVES[0] * across, DRIFT_WAVES[1] * along];
+            DRIFT * (self.noise.at(axis, place) - 0.5)
+        };
+        [x + drift(21, y, x), y + drift(22, x, y)]
     }
 
     /// The thread of an axis at `across`, at `along` its length.

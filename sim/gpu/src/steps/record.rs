@@ -63,10 +63,10 @@ pub struct StepRecord {
     most_over: f32,
     swap: f32,
     film_most: f32,
-    seep: [f32; 2],
+    seep: [f32; 3],
     /// Number of parts in which its paint moves.
     pub parts: u32,
-    room: [u32; 3],
+    room: [u32; 2],
 }
 
 /// Bytes from one record to the next.
@@ -158,9 +158,9 @@ impl StepRecord {
             most_over: traits.exchanging.most,
             swap: traits.exchanging.swap,
             film_most: traits.film_most as f32,
-            seep: [traits.seep.beside, traits.seep.along].map(|v| v as f32),
+            seep: [traits.seep.beside, traits.seep.along, traits.seep.clings].map(|v| v as f32),
             parts: traits.parts,
-            room: [0; 3],
+            room: [0; 2],
         }
     }
 

@@ -13,8 +13,8 @@ const OWN: f32 = 0.6;
 const PATCH: f32 = 0.16;
 const PATCHES: f32 = 1.0;
 const SINGLE: f32 = 1.2;
-/// The least that a bristle takes of the mean.
-const SHARE_MIN: f32 = 0.08;
+/// The least and the most that a bristle takes of the mean.
+const SHARE_RANGE: [f32; 2] = [0.08, 3.0];
 
 /// Share of each strip over the mean of all, for the load with this seed: the head as a whole takes the same.
 #[must_use]
@@ -24,8 +24,8 @@ pub fn streaks(head: &Head, seed: u64) -> Vec<f32> {
         let own = 1.0 + OWN * (capacity - 1.0);
         let patch = noise(seed, [root[0] / PATCH, 0.5 * root[1] / PATCH]);
         let single = unit(seed, [strip as i64, i64::MIN]);
-        let chance = PATCHES * (2.0 * patch - 1.0) + SINGLE * (2.0 * single - 1.0);
-        (own * (1.0 + chance)).max(SHARE_MIN)
+        let chance = PATCHES * (2.0 * patch - 1.0) + head.singly() * SINGLE * (2.0 * single - 1.0);
+        (own * (1.0 + chance)).clamp(SHARE_RANGE[0], SHARE_RANGE[1])
     });
     let mut taken: Vec<f32> = taken.collect();
     let mean = taken.iter().sum::<f32>() / taken.len() as f32;

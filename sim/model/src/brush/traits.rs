@@ -57,9 +57,9 @@ pub struct BrushTraits {
     pub follows: f32,
     /// Parameters of paint transfer.
     pub exchanging: Exchanging,
-    /// Share of a film's deficit that comes from inside in [`FLOW_STEPS`](Self::FLOW_STEPS).
+    /// Share of a film's deficit that comes from inside in a step.
     pub refill: f64,
-    /// Share of the difference between texels that evens out in as many.
+    /// Share of the difference between texels that evens out in a step.
     pub creep: f64,
     /// Seepage of paint between the films.
     pub seep: Seep,
@@ -70,22 +70,21 @@ pub struct BrushTraits {
 pub struct Seep {
     /// Share of their difference that evens out between strips, above the part held by the yield stress.
     pub beside: f64,
-    /// The same along a strip, where the motion shears it.
+    /// The same along a strip, where the motion shears it, above the film that clings to it.
     pub along: f64,
+    /// Quanta of a texel's film that cling to a strip: they do not flow along it.
+    pub clings: f64,
 }
 
 impl BrushTraits {
-    /// Interval between flows of paint within a strip, steps; strips take turns, so that strokes show none.
-    pub const FLOW_STEPS: u64 = 2;
     /// Share of a film's deficit that comes from inside along a reference cell.
     const REFILL: f64 = 0.15;
     /// Share of the difference between texels that evens out along a reference cell.
     const CREEP: f64 = 0.03;
-    /// Shares of the difference between films that even out along a reference cell.
-    const SEEP: Seep = Seep {
-        beside: 0.4,
-        along: 0.35,
-    };
+    /// Shares of the difference between films that even out along a reference cell: between strips, and along them.
+    const SEEP: [f64; 2] = [0.3, 0.35];
+    /// Thickness of the film that clings to a strip, µm.
+    const CLINGS_UM: f64 = 260.0;
     /// Difference between the films of two strips that stays, by a full film: so a bristle keeps its streak.
     pub const HOLDS: f64 = 0.3;
 
@@ -99,7 +98,7 @@ impl BrushTraits {
         let quanta = |um: f64| (um * 1e-6 / QUANTUM_M * texel_cells).min(TEXEL_MOST);
         let steps = cell_m / REFERENCE_CELL_M;
         let step_cells = Scale { cell_m, zoom }.step_cells(rigid || file.surface.is_some());
-        let flow = Self::FLOW_STEPS as f64 * steps * step_cells;
+        let flow = steps * step_cells;
         let part =
             |of_reference: f64, flow| 1.0 - exp(maulstick_num::ln(1.0 - of_reference) * flow);
         let share = |of_reference: f64| part(of_reference, flow);
@@ -135,8 +134,9 @@ impl BrushTraits {
             creep: share(Self::CREEP),
             seep: Seep {
                 // Paint seeps as it diffuses: by the square of the distance, which grows as the root of how many it stands for.
-                beside: part(Self::SEEP.beside, flow / file.strips.stands_for),
-                along: share(Self::SEEP.along),
+                beside: part(Self::SEEP[0], flow / file.strips.stands_for),
+                along: share(Self::SEEP[1]),
+                clings: quanta(Self::CLINGS_UM),
             },
         }
     }
@@ -152,7 +152,7 @@ impl BrushTraits {
     /// The traits of a step doubled a number of times.
     #[must_use]
     pub fn doubled(mut self, doublings: u32) -> Self {
-        let Seep { beside, along } = &mut self.seep;
+        let Seep { beside, along, .. } = &mut self.seep;
         for share in [&mut self.refill, &mut self.creep, beside, along] {
             let rest = (0..doublings).fold(1.0 - *share, |rest, _| rest * rest);
             *share = 1.0 - rest;
@@ -175,7 +175,7 @@ pub(crate) const FILM_OVER: f64 = 2.0;
 pub(crate) const BLADE_OVER: f64 = 3.0;
 /// Share of the motion of bristles that paint follows: it sticks to them about as to the canvas (a half in Baxter 2004,
 /// § 6.4.2). Paint in front of a blade goes with it.
-pub(crate) const FOLLOWS: f32 = 0.4;
+pub(crate) const FOLLOWS: f32 = 0.45;
 /// [`FOLLOWS`] of a blade.
 pub(crate) const BLADE_FOLLOWS: f32 = 1.0;
 /// Share of the lift that remains where the head is fully pressed: bristles never lie in one plane.

@@ -55,8 +55,7 @@ impl Refill {
     #[must_use]
     pub fn of(traits: &BrushTraits, cells: f32) -> Self {
         let units = QUANTA_PER_UNIT * f64::from(traits.film_units_per_quantum);
-        // The trait holds for FLOW_STEPS steps.
-        let steps = f64::from(cells / traits.step_cells) / BrushTraits::FLOW_STEPS as f64;
+        let steps = f64::from(cells / traits.step_cells);
         let kept = (1.0 - traits.refill).max(1e-9);
         Self {
             deep: f64::from(RESERVOIR_UNIT * UNIT) / units,

@@ -140,13 +140,8 @@ impl Dab {
         }
         if step.handling.transfer != Transfer::Sponge {
             let dither = Dither::new(step.load.seed(), number);
-            // Paint flows in a strip only every few steps, at different steps in different strips, so that strokes show
-            // none.
-            const STEPS: usize = BrushTraits::FLOW_STEPS as usize;
-            let turn = step.load.steps() as usize % STEPS;
-            let strips = stroke.strips.iter().enumerate();
-            let strips = strips.filter(|(strip, over)| **over && strip % STEPS == turn);
-            let refilled = Refill::of(&step.traits, STEPS as f32 * cells);
+            let strips = stroke.strips.iter().enumerate().filter(|(_, over)| **over);
+            let refilled = Refill::of(&step.traits, cells);
             refill(step.load, &refilled, strips.map(|(strip, _)| strip), dither);
             step.load.count_films();
         }

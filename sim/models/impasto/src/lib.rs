@@ -86,19 +86,22 @@
 //!   velocities of the faces.
 //! - The squish −c·∇p is an explicit diffusion of coefficient c·h, bounded by .04. Central differences in cells grow
 //!   speckles above .2; differences across faces do not.
-//! - Between the ride of a bristle and the relief lies a gap, which its film fills beyond the gap's height, sixteen
+//! - Between the ride of a bristle and the relief lies a gap, which its film fills beyond the gap's height, 64
 //!   times as fast as films even out; a bridging film splits in its middle. So a full brush fills most of the tooth, an
 //!   empty one catches on peaks, a light one on dry ridges. A brush with a limit (a glaze) leaves up to as much again
 //!   in hollows, and has no limit on a palette, where paints are mixed.
-//! - A badger exchanges ten times as much film, so it softens. A blade floats on its paint by its pressure, takes up
+//! - Colour travels by a skin that bristle and paint shear between them wherever their films touch, both ways, so also
+//!   where they are equal: the wider the gap, the less. A full white brush through blue stays blue for a hand's length.
+//! - A badger exchanges more than it takes up, so it softens. A blade floats on its paint by its pressure, takes up
 //!   what stands above its edge and fills what lies below: it scrapes and deposits slabs.
 //! - The lowest strip of a cell depends on the cell size. To keep the trace of a brush independent of it, paint flows
 //!   in every strip and seeps between neighbours, down to a difference held by the yield stress, which keeps streaks.
-//!   Between thinned strips it seeps half as fast, as in diffusion.
+//!   Between thinned strips it seeps half as fast, as in diffusion. Along a strip a thin film clings: what a clean brush
+//!   takes up stays near its tips, and a brush that is painted out starves bristle by bristle.
 //! - Levelling belongs to the stroke and lasts a second. Under moving bristles, a hundredth of a second a cell,
 //!   levelling is not measurable. Heights go through sixteen rounds before all paints follow by their sum; blocks
-//!   without flow rest; cells under .125 mm flow on coarser grids first. Paint just worked yields at 12 Pa; thinner
-//!   takes that away, and thinned paint wets bare ground.
+//!   without flow rest; cells under 1 mm flow on coarser grids first. Paint that the brush has left yields at 55 Pa,
+//!   which holds the ridges of bristles; thinner takes that away, and thinned paint wets bare ground.
 
 #[cfg(feature = "device")]
 pub mod device;

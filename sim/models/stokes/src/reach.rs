@@ -4,7 +4,7 @@ use maulstick_canvas::quantum::QUANTA_PER_UNIT;
 use maulstick_canvas::window::Window;
 use maulstick_model::footprint::Footprint;
 use maulstick_model::interface::Step;
-use maulstick_model::transfer::SWAP_FILM;
+use maulstick_model::transfer::SKIN;
 
 use crate::voxels::Voxels;
 
@@ -22,7 +22,7 @@ impl Reach {
         self.quanta.clear();
         self.quanta.resize(footprint.contacts.len() * paints, 0);
         let per_cell = 1.0 / step.traits.cells_per_quantum;
-        let film = SWAP_FILM * QUANTA_PER_UNIT as f32;
+        let film = SKIN * QUANTA_PER_UNIT as f32;
         let width = step.window.width();
         let contacts = footprint
             .contacts

@@ -2,7 +2,6 @@
 
 use bytemuck::{Pod, Zeroable};
 use maulstick_canvas::quantum::QUANTA_PER_UNIT;
-use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::interface::{Step, Transfer};
 
 use crate::dither::Dither;
@@ -11,8 +10,6 @@ use crate::transfer::Limits;
 
 use maulstick_gpu::steps::record::{Grid, RECORD_WORDS};
 
-/// Number of an absent strip.
-const NONE: u32 = u32::MAX;
 /// Scale of a share in the upper half of a fixed-point number, and in both halves.
 const PARTS: [f64; 2] = [4_294_967_296.0, 18_446_744_073_709_551_616.0];
 
@@ -41,7 +38,7 @@ pub(crate) struct BlendRecord {
     deep: f32,
     full: [f32; 2],
     rate: f32,
-    turn: u32,
+    refills: u32,
     thresholds: [u32; 2],
     /// Number of cells of the grid of the step's first drawing.
     pub(crate) first_drawn: u32,
@@ -67,7 +64,7 @@ impl BlendRecord {
         let share = (PARTS[1] / large.max(1.0)) as u64;
         let [across, up] = Dither::increases().map(halves);
         let limits = Limits::of(step);
-        let refill = Refill::of(&step.traits, BrushTraits::FLOW_STEPS as f32 * cells);
+        let refill = Refill::of(&step.traits, cells);
         let dither = Dither::new(step.load.seed(), crate::first_blend(number));
         Self {
             low: [0, 1].map(|i| on_grid(canvas.from[i], i)),
@@ -86,10 +83,7 @@ impl BlendRecord {
             deep: refill.deep as f32,
             full: refill.full.map(|quanta| quanta as f32),
             rate: refill.rate as f32,
-            turn: match step.handling.transfer {
-                Transfer::Sponge => NONE,
-                _ => (number % BrushTraits::FLOW_STEPS) as u32,
-            },
+            refills: u32::from(step.handling.transfer != Transfer::Sponge),
             thresholds: [0, 1].map(|row| dither.parts_at([0, row])),
             ..Self::default()
         }

@@ -1,7 +1,7 @@
 //! The stages of impasto in their order.
 
 use maulstick_model::brush::traits::BrushTraits;
-use maulstick_model::transfer::{POOL, SWAP_FILM};
+use maulstick_model::transfer::{NEAR, POOL, SKIN, SPLITS};
 
 use crate::stages::velocity::{EASE, SLIP, SQUISH, STABLE};
 
@@ -89,7 +89,12 @@ pub(crate) static KERNELS: [Kernel; 14] = [
     Kernel {
         name: "exchange_ask",
         source: &[COMMON, include_str!("shaders/exchange_ask.wgsl")],
-        constants: &[("SWAP_FILM", SWAP_FILM as f64), ("POOL", POOL as f64)],
+        constants: &[
+            ("SKIN", SKIN as f64),
+            ("NEAR", NEAR as f64),
+            ("POOL", POOL as f64),
+            ("SPLITS", SPLITS as f64),
+        ],
         bindings: &[B::Load, B::Asks, B::Contacts, B::Totals, B::Wants],
         groups: Groups::Planned(0),
     },

@@ -11,15 +11,14 @@ use maulstick_model::brush::load::{PaintOnBrush, film_share};
 use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 use maulstick_model::interface::Step;
 
-/// Counts a step and moves paint within the strips of this step.
+/// Counts a step and moves paint within the strips.
 pub fn flow(step: &mut Step<'_>) {
     step.load.count_step();
-    let steps = step.load.steps();
     let (films, paints) = step.load.parts_mut();
     let mut paints: Vec<PaintOnBrush<'_>> = paints.collect();
     let thinner = paints.iter().position(|p| Some(p.slot) == step.thinner);
     let capacity = step.head.capacity();
-    flow_in_strips(films, &mut paints, thinner, capacity, &step.traits, steps);
+    flow_in_strips(films, &mut paints, thinner, capacity, &step.traits);
 }
 
 wide! {
@@ -29,11 +28,9 @@ wide! {
         thinner: Option<usize>,
         capacity: &[f32],
         traits: &BrushTraits,
-        steps: u64,
     ) {
-        let every = BrushTraits::FLOW_STEPS as usize;
         let strips = films.as_chunks_mut::<TEXELS_PER_STRIP>().0.iter_mut().zip(capacity);
-        for (strip, (film, capacity)) in strips.enumerate().skip(first_of(steps)).step_by(every) {
+        for (strip, (film, capacity)) in strips.enumerate() {
             let inside = all_inside(strip, paints);
             let thin = thinner.map_or(0.0, |thinner| {
                 let there = film.iter().chain(&inside).map(|count| f64::from(*count)).sum();
@@ -52,13 +49,6 @@ wide! {
             }
         }
     }
-}
-
-/// The first of the strips, or pairs of them, of this step: every [`BrushTraits::FLOW_STEPS`]th.
-#[inline(always)]
-pub(super) fn first_of(steps: u64) -> usize {
-    let every = BrushTraits::FLOW_STEPS;
-    ((every - steps % every) % every) as usize
 }
 
 /// The texels of a strip.

@@ -137,7 +137,8 @@ pub(crate) fn wanted(meeting: &Meeting, rule: &Exchanging, handling: &Handling) 
             let share = rule.share(meeting.travel);
             let amounts = [meeting.on_brush, on_canvas, lying, meeting.gap];
             let net = rule.transfer(amounts, meeting.travel, share);
-            (net, rule.swapped(meeting.on_brush, on_canvas, share))
+            let wet = [meeting.on_brush, lying, larger(meeting.gap, 0.0)];
+            (net, rule.swapped(wet, meeting.travel))
         }
     };
     let hollow = larger(meeting.gap, 0.0) * QUANTA_PER_UNIT as f32;

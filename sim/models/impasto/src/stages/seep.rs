@@ -3,7 +3,8 @@
 //!
 //! Only the amount that evens the films out goes over, with the mixture of the fuller one: so the whole head feeds the
 //! bristles that touch, and adjacent colours stay distinct. Between strips the yield stress holds a difference, so that
-//! a fuller bristle paints its streak to the end.
+//! a fuller bristle paints its streak to the end; along a strip a thin film clings, so that paint that a clean brush
+//! takes up stays near its tips, and the tips of a brush that is painted out starve.
 
 use maulstick_num::select::larger;
 use maulstick_num::wide;
@@ -12,7 +13,7 @@ use maulstick_model::brush::load::PaintOnBrush;
 use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 use maulstick_model::interface::Step;
 
-use super::bristle_flow::{first_of, part};
+use super::bristle_flow::part;
 
 /// Evens films out: between strips of either order in turn, and along them.
 pub fn seep(step: &mut Step<'_>) {
@@ -21,18 +22,10 @@ pub fn seep(step: &mut Step<'_>) {
     let holds = BrushTraits::HOLDS * step.traits.film_full;
     let (films, paints) = step.load.parts_mut();
     let mut paints: Vec<PaintOnBrush<'_>> = paints.collect();
-    let turn = steps / BrushTraits::FLOW_STEPS;
-    let order = &step.head.beside()[(turn % 2) as usize];
-    let first = (turn / 2 % 2) as usize;
-    between_strips(
-        films,
-        &mut paints,
-        &order[first..],
-        seep.beside,
-        holds,
-        steps,
-    );
-    along_strips(films, &mut paints, seep.along, steps);
+    let order = &step.head.beside()[(steps % 2) as usize];
+    let first = (steps / 2 % 2) as usize;
+    between_strips(films, &mut paints, &order[first..], seep.beside, holds);
+    along_strips(films, &mut paints, [seep.along, seep.clings], steps);
 }
 
 wide! {
@@ -42,10 +35,8 @@ wide! {
         order: &[u32],
         share: f64,
         holds: f64,
-        steps: u64,
     ) {
-        let every = BrushTraits::FLOW_STEPS as usize;
-        for pair in order.as_chunks::<2>().0.iter().skip(first_of(steps)).step_by(every) {
+        for pair in order.as_chunks::<2>().0 {
             let pair = pair.map(|strip| strip as usize);
             let [one, other] = of_strips(films, pair);
             let (mut on, mut back, mut goes) = ([0.0; TEXELS_PER_STRIP], [0.0; TEXELS_PER_STRIP], 0.0);
@@ -92,19 +83,20 @@ wide! {
     fn along_strips(
         films: &mut [u32],
         paints: &mut [PaintOnBrush<'_>],
-        share: f64,
+        seep: [f64; 2],
         steps: u64,
     ) {
-        let every = BrushTraits::FLOW_STEPS as usize;
+        let [share, clings] = seep;
         let strips = films.as_chunks_mut::<TEXELS_PER_STRIP>().0.iter_mut().enumerate();
-        for (strip, films) in strips.skip(first_of(steps)).step_by(every) {
+        for (strip, films) in strips {
             // Pairs start in turn at the first and at the second texel.
-            let first = (steps as usize + strip) / every % 2;
+            let first = (steps as usize + strip) % 2;
             // For each texel but the last, the flow between it and the next; in every second pair.
             let (mut on, mut back, mut falls) = ([0.0; TEXELS_PER_STRIP], [0.0; TEXELS_PER_STRIP], 0.0);
             for k in 0..TEXELS_PER_STRIP - 1 {
                 let own = if k % 2 == first { share } else { 0.0 };
-                let fall = f64::from(films[k]) - f64::from(films[k + 1]);
+                let [own_film, next] = [films[k], films[k + 1]].map(|film| larger(f64::from(film), clings));
+                let fall = own_film - next;
                 on[k] = given(own, fall, films[k]);
                 back[k] = given(own, -fall, films[k + 1]);
                 falls = larger(falls, own * fall.abs());

@@ -76,13 +76,6 @@ fn agrees(got: &[Texels; 2], want: &[Texels; 2]) -> bool {
         })
 }
 
-/// Lets paint flow once.
-fn flow_once(scene: &mut Scene) {
-    for _ in 0..BrushTraits::FLOW_STEPS {
-        flow(&mut scene.step());
-    }
-}
-
 /// On the reference cell, and on coarse cells, where a step is long and all paint may leave at once.
 #[test]
 fn paint_flows_within_all_strips_and_none_is_lost() {
@@ -94,7 +87,7 @@ fn paint_flows_within_all_strips_and_none_is_lost() {
         let before = scene.counts();
         let strips = scene.head.strips();
         let held: Vec<_> = (0..strips).map(|s| strip_of(&scene.load, s)).collect();
-        flow_once(&mut scene);
+        flow(&mut scene.step());
         assert_eq!(scene.counts(), before, "scene {seed}");
         for strip in 0..strips {
             let mut got = strip_of(&scene.load, strip);
@@ -141,7 +134,7 @@ fn a_used_up_film_fills_again() {
     scene.load.count_films();
     let full = scene.traits.film_full * f64::from(scene.head.capacity()[0]);
     for _ in 0..100 {
-        flow_once(&mut scene);
+        flow(&mut scene.step());
     }
     let film = f64::from(scene.load.film(7));
     assert!((0.99..=1.0).contains(&(film / full)), "{film} of {full}");

@@ -4,7 +4,10 @@ use maulstick_canvas::window::{Area, Window};
 use maulstick_impasto::stages::levelling::{Body, Levelling, Round};
 use maulstick_impasto::stages::velocity::Faces;
 
-use crate::scene::{CELL_M, Random, Scene};
+use crate::scene::{Random, Scene};
+
+/// Side of a cell, m: twice that is larger than the cells of the coarsest grid.
+const CELL_M: f64 = 5.1e-4;
 
 /// Surface tension of linseed oil, N/m, and weight of paint of 1,800 kg/m³, N/m³.
 const TENSION: f64 = 0.03;
@@ -75,6 +78,26 @@ impl Film<'_> {
         let rounding = 8.0 * CELL_M * EPS;
         let off = 24.0 * rounding * (TENSION / CELL_M.powi(3) + WEIGHT / CELL_M);
         let off = off + 8.0 * EPS * gradient.abs();
+        // Differences of a wave of three cells or more tell its length, and so its stress: by (½θ/sin ½θ)³.
+        let exact = |rounded: f64| {
+            let drop = s - s_next + 24.0 * rounded * rounding;
+            let sine = 0.5 * (curved * CELL_M.powi(3) / drop).clamp(0.0, 3.0).sqrt();
+            let half = maulstick_num::atan2(sine, (1.0 - sine * sine).sqrt());
+            if sine > 0.0 {
+                (half / sine).powi(3)
+            } else {
+                1.0
+            }
+        };
+        let stresses = if (s - s_next).abs() > 24.0 * rounding {
+            [
+                0.99 * exact(-1.0).min(exact(1.0)),
+                exact(0.0),
+                1.01 * exact(-1.0).max(exact(1.0)),
+            ]
+        } else {
+            [1.0, 1.4, 1.8]
+        };
         let mean = |of: &dyn Fn([i64; 2]) -> f64| 0.5 * (of(at) + of(next));
         let height = mean(&|at| self.to_cells * self.quanta(at) * CELL_M);
         // A share of one half removes the yield stress; thinner alone is e⁷ times as fluid.
@@ -83,8 +106,8 @@ impl Film<'_> {
         let advances = ADVANCES * mean(&left);
         let fluid = mean(&|at| maulstick_num::exp(7.0 * self.thin(at)));
         let viscosity = self.body.viscosity_pa_s.max(1e-9) / fluid;
-        let goes = |gradient: f64| {
-            let sheared = (height - yields / gradient.abs().max(1e-300)).max(0.0);
+        let goes = |gradient: f64, by: f64| {
+            let sheared = (height - yields / (by * gradient.abs()).max(1e-300)).max(0.0);
             let mobility = sheared * sheared * (3.0 * height - sheared) / (6.0 * viscosity);
             // As a share of a cell's height, in the time of the round.
             let mobility = mobility * self.seconds / (CELL_M * CELL_M);
@@ -99,14 +122,17 @@ impl Film<'_> {
             }
             (volume / (self.to_cells * held)).clamp(-MOST, MOST)
         };
-        let mut shares = [goes(gradient - off), goes(gradient), goes(gradient + off)];
+        let gradients = [gradient - off, gradient, gradient + off];
+        let all = gradients.map(|gradient| stresses.map(|by| goes(gradient, by)));
+        let mut shares = all.concat();
         // A slope near the bound within rounding may count as either.
         if ((s - s_next).abs() / CELL_M - advances).abs() < 1e-5 {
-            shares[1] = 0.0;
+            shares.push(0.0);
         }
         shares.sort_by(f64::total_cmp);
         let off = |share: f64| 1e-5 * share.abs() + 1e-7;
-        [shares[0] - off(shares[0]), shares[2] + off(shares[2])]
+        let most = shares[shares.len() - 1];
+        [shares[0] - off(shares[0]), most + off(most)]
     }
 
     /// Flow through the right and upper faces of an area's cells; none through its border.

@@ -124,7 +124,7 @@ fn followed(kind: &str) -> f64 {
 #[test]
 fn paint_follows_the_brush_and_goes_out_of_its_way() {
     let (mut clamped, mut squished, mut slowed, mut partly) = (0, 0, 0, 0);
-    for seed in 0..24 {
+    for seed in 0..32 {
         let mut scene = Scene::new(seed);
         scene.thinner = [None, Some(2)][seed as usize / 2 % 2];
         let kind = ["round", "knife"][seed as usize / 4 % 2];

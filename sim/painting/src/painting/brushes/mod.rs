@@ -22,6 +22,8 @@ use super::backend::deferral::Deferral;
 use crate::brush_colour::Carried;
 use crate::error::BrushError;
 
+/// Way of a stroke from one regrouping of its bristles to the next, cells: they move by less than a cell in it.
+const REGROUP_CELLS: f64 = 5.0;
 /// Bits of a seed.
 const SEEDS: u64 = 0x7fff_ffff;
 
@@ -55,6 +57,8 @@ pub(crate) struct PaintingBrush {
     pub(crate) strokes: usize,
     /// Seed of the disorder of its bristles.
     pub(crate) seed: u64,
+    /// Way of its newest stroke, and where on it its bristles have regrouped last, m.
+    pub(crate) way_m: [f64; 2],
     /// Surface under it at its newest step.
     pub(crate) under: UnderBrush,
     /// Progress of its deferred steps.
@@ -80,6 +84,7 @@ impl PaintingBrush {
             loads: Vec::new(),
             strokes: 0,
             seed: 0,
+            way_m: [0.0; 2],
             under: UnderBrush::default(),
             deferral: Deferral::default(),
         }
@@ -119,8 +124,20 @@ impl PaintingBrush {
     /// Disorders its bristles for the painting's stroke with this number.
     pub(crate) fn disorder(&mut self, stroke: u64) {
         self.seed = seed_of(stroke);
+        self.way_m = [0.0; 2];
         self.head = self.disordered();
         Arc::make_mut(&mut self.load).disorder(self.seed);
+    }
+
+    /// Regroups its bristles if it has gone on far enough since they did last, on cells of `cell_m`; true if it has.
+    pub(crate) fn regroup(&mut self, cell_m: f64) -> bool {
+        let [way, last] = &mut self.way_m;
+        if *way - *last < REGROUP_CELLS * cell_m {
+            return false;
+        }
+        *last = *way;
+        self.head = self.disordered();
+        true
     }
 
     /// Thins it to the strips that cells of `cell_m` can resolve.
@@ -142,7 +159,7 @@ impl PaintingBrush {
 
     /// The head with its bristles disordered by its seed.
     pub(crate) fn disordered(&self) -> Arc<Head> {
-        Arc::new(self.tidy.disordered(self.seed))
+        Arc::new(self.tidy.disordered(self.seed, self.way_m[1]))
     }
 
     /// The page of its load; a new one where the load has changed since the last.

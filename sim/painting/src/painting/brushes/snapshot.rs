@@ -38,6 +38,7 @@ impl Brushes {
                 loads: brush.loads.clone(),
                 strokes: brush.strokes,
                 seed: brush.seed,
+                way_m: brush.way_m,
             };
             (brush.name.clone(), kept)
         });
@@ -72,7 +73,7 @@ impl PaintingBrush {
         })?;
         let mut brush = Self::new(&name, file, surfaces.cell_m());
         (brush.stroke, brush.strokes, brush.loads) = (kept.stroke, kept.strokes, kept.loads);
-        brush.seed = kept.seed;
+        (brush.seed, brush.way_m) = (kept.seed, kept.way_m);
         if let Some(page) = page {
             let load = page.get();
             if load.texels() > 0 {

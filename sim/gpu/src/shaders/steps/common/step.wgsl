@@ -83,11 +83,14 @@ struct Step {
     swap: f32,
     // Greatest film of a texel, quanta.
     film_most: f32,
-    // Share of the difference between films that evens out in FLOW_STEPS, between strips and along them.
+    // Share of the difference between films that evens out in a step, between strips and along them.
     seep_beside: f32,
     seep_along: f32,
+    // Quanta of a texel's film that cling to a strip.
+    clings: f32,
     // Number of parts in which paint moves, which the host dispatches; padding, so that records lie 256 bytes apart.
-    parts: vec4<u32>,
+    parts: u32,
+    room: vec2<u32>,
 }
 
 // A cell in contact.
@@ -110,8 +113,6 @@ const NONE = 0xffffffffu;
 const PER_LOG = 262144.0;
 const STATIONS = 9u;
 const TEXELS_PER_STRIP = 16u;
-// Interval between flows of paint within a strip, steps; strips take turns.
-const FLOW_STEPS = 2u;
 const QUANTA_PER_UNIT = 16777216.0;
 const PAINT = 0u;
 const SPONGE = 1u;
@@ -177,11 +178,6 @@ const STEP_STATS = 20u;
 
 // The greatest height of paint over all steps.
 const TOP_EVER = 3u;
-
-// True in the step of a strip, or of a pair of strips.
-fn is_due(number: u32) -> bool {
-    return (load[0] + number) % FLOW_STEPS == 0u;
-}
 
 fn stat(which: u32) -> u32 {
     return 4u + STEP_STATS * step.number + which;

@@ -107,9 +107,9 @@ fn refill(
     }
     storageBarrier();
     workgroupBarrier();
-    let touched = atomicLoad(&stats[stat(TOUCHED)]) != 0u && blend_of.turn != NONE;
+    let touched = atomicLoad(&stats[stat(TOUCHED)]) != 0u && blend_of.refills != 0u;
     let over = atomicLoad(&asks[touch_of(strip)]) != 0u;
-    let flows = touched && over && strip % FLOW_STEPS == blend_of.turn;
+    let flows = touched && over;
     // From the point up, so that paint runs down by one texel a step.
     for (var k = TEXELS_PER_STRIP; k > 0u; k--) {
         var shares = vec2(0.0);

@@ -1,5 +1,5 @@
-// Adds the exchanged paint to the films of touching strips. Every few steps paint also moves within a strip: from
-// inside to a film that lacks some, from one with an excess inward, and along.
+// Adds the exchanged paint to the films of touching strips. Paint also moves within a strip: from inside to a
+// film that lacks some, from one with an excess inward, and along.
 
 // Share by which a film of thinner alone is thinner than one of paint.
 const RUNS_OFF = 0.7;
@@ -97,10 +97,6 @@ fn bristle_flow(@builtin(global_invocation_id) id: vec3<u32>) {
     if strip >= step.strips {
         return;
     }
-    let flows = is_due(strip);
-    if atomicLoad(&asks[touch_of(strip)]) == 0u && !flows {
-        return;
-    }
     atomicStore(&asks[touch_of(strip)], 0u);
     for (var k = 0u; k < TEXELS_PER_STRIP; k++) {
         let texel = strip * TEXELS_PER_STRIP + k;
@@ -112,9 +108,7 @@ fn bristle_flow(@builtin(global_invocation_id) id: vec3<u32>) {
             atomicStore(&asks[change], 0u);
         }
     }
-    if flows {
-        flow_in(strip);
-    }
+    flow_in(strip);
     for (var k = 0u; k < TEXELS_PER_STRIP; k++) {
         let texel = strip * TEXELS_PER_STRIP + k;
         var sum = 0u;

@@ -1,8 +1,10 @@
 // Requests of each cell to its texel, and offers to it (Baxter 2004, Algorithm 3, by path length), summed by texel.
 
 // Constants of transfer.rs in maulstick-impasto.
-override SWAP_FILM: f32;
+override SKIN: f32;
+override NEAR: f32;
 override POOL: f32;
+override SPLITS: f32;
 
 // Share of a gap that fills where `share` of a difference evens out: 1 − (1 − share)¹⁶.
 fn filled(share: f32) -> f32 {
@@ -14,8 +16,8 @@ fn filled(share: f32) -> f32 {
 
 fn transfer(on_brush: f32, on_canvas: f32, lies: f32, gap: f32, share: f32, travel: f32) -> f32 {
     let free = max(on_brush - gap, 0.0);
-    // A film that bridges the gap under a bristle splits in its middle.
-    let splits = max(on_brush - step.evens * 0.5 * (on_brush + lies), 0.0);
+    // A film that bridges the gap under a bristle splits.
+    let splits = max(on_brush - step.evens * SPLITS * (on_brush + lies), 0.0);
     let fill = filled(share) * min(min(gap, free), splits);
     let difference = step.evens * free - on_canvas;
     let donor = select(on_canvas, on_brush - fill, difference > 0.0);
@@ -44,7 +46,8 @@ fn exchange_ask(@builtin(global_invocation_id) id: vec3<u32>) {
     if step.transfer != MARKER {
         let share = 1.0 - decay(step.ln_kept * travel);
         net = transfer(on_brush, on_canvas, lies, gap, share, travel);
-        swap = step.swap * share * min(min(on_brush, on_canvas), SWAP_FILM);
+        let skin = min(min(max(on_brush - gap, 0.0), lies), SKIN);
+        swap = min(step.swap * travel * (NEAR / (NEAR + gap)), 1.0) * skin;
     }
     let quanta = contact.cover * QUANTA_PER_UNIT;
     let pool = min(gap * QUANTA_PER_UNIT, POOL * step.most);

@@ -6,7 +6,8 @@ override second: u32 = 0u;
 // Difference between the films of two strips that remains, as a share of a full film (model.rs).
 override HOLDS: f32;
 
-fn even_out(a: u32, b: u32, part: f32, holds: f32) {
+// Up to `clings` a film stays where it is.
+fn even_out(a: u32, b: u32, part: f32, holds: f32, clings: f32) {
     let films = vec2(load[1u + a], load[1u + b]);
     if films.x == films.y {
         return;
@@ -14,7 +15,8 @@ fn even_out(a: u32, b: u32, part: f32, holds: f32) {
     let full = select(b, a, films.x > films.y);
     let thin = select(a, b, films.x > films.y);
     let most = max(films.x, films.y);
-    let falls = max(f32(most - min(films.x, films.y)) - holds, 0.0);
+    let least = max(f32(min(films.x, films.y)), clings);
+    let falls = max(max(f32(most), clings) - least - holds, 0.0);
     let share = 0.5 * part * falls / f32(most);
     var sum = 0u;
     for (var paint = 0u; paint < step.planes; paint++) {
@@ -30,12 +32,12 @@ fn even_out(a: u32, b: u32, part: f32, holds: f32) {
 
 @compute @workgroup_size(64)
 fn seep(@builtin(global_invocation_id) id: vec3<u32>) {
-    let turn = load[0] / FLOW_STEPS;
+    let turn = load[0];
     let first = turn / 2u % 2u;
     if second == 0u {
         let pair = id.x / TEXELS_PER_STRIP;
         let place = first + 2u * pair;
-        if place + 1u < step.strips && is_due(pair) {
+        if place + 1u < step.strips {
             let order = 4u * step.faces + 2u * step.vertices + (2u + turn % 2u) * step.strips;
             let along = id.x % TEXELS_PER_STRIP;
             even_out(
@@ -43,15 +45,17 @@ fn seep(@builtin(global_invocation_id) id: vec3<u32>) {
                 head[order + place + 1u] * TEXELS_PER_STRIP + along,
                 step.seep_beside,
                 HOLDS * step.film_full,
+                0.0,
             );
         }
         return;
     }
     let pairs = TEXELS_PER_STRIP / 2u;
     let strip = id.x / pairs;
-    let begins = (load[0] + strip) / FLOW_STEPS % 2u;
+    let begins = (load[0] + strip) % 2u;
     let along = begins + 2u * (id.x % pairs);
-    if strip < step.strips && along + 1u < TEXELS_PER_STRIP && is_due(strip) {
-        even_out(strip * TEXELS_PER_STRIP + along, strip * TEXELS_PER_STRIP + along + 1u, step.seep_along, 0.0);
+    if strip < step.strips && along + 1u < TEXELS_PER_STRIP {
+        let texel = strip * TEXELS_PER_STRIP + along;
+        even_out(texel, texel + 1u, step.seep_along, 0.0, step.clings);
     }
 }

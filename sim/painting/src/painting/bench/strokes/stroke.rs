@@ -92,7 +92,13 @@ impl Stroke<'_> {
         } else {
             PathStepper::begin(&head, waypoint, scale)
         };
-        self.brush_mut().path = Some((surface, path));
+        let own = self.brush_mut();
+        let path = if own.regroup(scale.cell_m) {
+            path.regrouped(&own.head)
+        } else {
+            path
+        };
+        own.path = Some((surface, path));
         Ok(())
     }
 

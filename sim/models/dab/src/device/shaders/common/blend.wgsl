@@ -39,7 +39,7 @@ struct Blend {
     full_surface: f32,
     full_inside: f32,
     rate: f32,
-    turn: u32,
+    refills: u32,
     threshold_flows: u32,
     threshold_runs: u32,
     // Number of cells of the grid of the step's first drawing.
