@@ -16,7 +16,7 @@ const RIM: f32 = 4.0;
 /// Power of the place from the middle to the rim by which that grows.
 const RIM_POWER: i32 = 8;
 /// Way along which tresses regroup, m.
-const REGROUPS_M: f64 = 25e-3;
+const REGROUPS_M: f64 = 17.5e-3;
 /// Numbers of the planes of noise: across the width, across the thickness, along.
 const PLANES: [u64; 3] = [11, 12, 13];
 

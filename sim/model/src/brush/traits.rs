@@ -82,7 +82,7 @@ impl BrushTraits {
     /// Share of the difference between texels that evens out along a reference cell.
     const CREEP: f64 = 0.03;
     /// Shares of the difference between films that even out along a reference cell: between strips, and along them.
-    const SEEP: [f64; 2] = [0.3, 0.35];
+    const SEEP: [f64; 2] = [0.4, 0.35];
     /// Thickness of the film that clings to a strip, µm.
     const CLINGS_UM: f64 = 260.0;
     /// Difference between the films of two strips that stays, by a full film: so a bristle keeps its streak.

@@ -112,12 +112,12 @@ fn agrees(faces: &Faces, oracle: &[Vec<f64>; 2]) -> bool {
     near(&faces.right, &oracle[0]) && near(&faces.above, &oracle[1])
 }
 
-/// Share of its motion that paint follows: half under bristles, because it sticks to canvas and bristle alike (Baxter
-/// 2004, § 6.4.2), and all before a blade.
+/// Share of its motion that paint follows: nearly half under bristles, because it sticks to canvas and bristle alike
+/// (Baxter 2004, § 6.4.2), and all before a blade.
 fn followed(kind: &str) -> f64 {
     match kind {
         "knife" => 1.0,
-        _ => 0.4,
+        _ => 0.45,
     }
 }
 
