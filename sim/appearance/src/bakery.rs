@@ -7,6 +7,7 @@ use maulstick_canvas::dry::{DryLayer, DryStack};
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::tile::TileId;
 use maulstick_optics::backend::FilmBackend;
+use maulstick_optics::edge::covers;
 use maulstick_optics::{FilmPlanes, Under};
 
 use crate::appearance::Appearance;
@@ -43,12 +44,14 @@ fn bake(
                 slots.map(|(slot, film)| (*slot, film.as_slice())).collect()
             })
             .collect();
+        let covers: Vec<Option<Vec<f32>>> = paints.iter().map(|paints| covers(paints)).collect();
         let batch: Vec<FilmPlanes<'_>> = at
             .iter()
-            .zip(&paints)
-            .map(|((tile, layer), paints)| FilmPlanes {
+            .zip(paints.iter().zip(&covers))
+            .map(|((tile, layer), (paints, cover))| FilmPlanes {
                 paints,
                 opacity: look.opacity(layer.number),
+                cover: cover.as_deref(),
                 under: match &baked[*tile] {
                     Some(planes) => Under::Planes(planes),
                     None => tiles[*tile].ground,
@@ -59,6 +62,7 @@ fn bake(
             let nothing = |films: &FilmPlanes<'_>| {
                 let nothing = FilmPlanes {
                     paints: &[],
+                    cover: None,
                     ..*films
                 };
                 look.studio.bake(&nothing, TILE_CELLS)

@@ -115,6 +115,7 @@ impl Shown {
                 let bare = FilmPlanes {
                     paints: &[],
                     opacity: 1.0,
+                    cover: None,
                     under: ground,
                 };
                 palette.look.studio.shade(&bare, [red, green, blue]);
@@ -161,6 +162,7 @@ impl Shown {
                 let film = FilmPlanes {
                     paints: &paints,
                     opacity: kind.opacity(),
+                    cover: None,
                     under: Under::Planes(under),
                 };
                 *under = palette.look.studio.bake(&film, TILE_CELLS);

@@ -77,6 +77,10 @@ pub fn check(studio: &Studio, tiles: &[FilmPlanes<'_>]) -> Result<(), BackendErr
                 return wrong(format!("a paint has {cells} cells, not {TILE_CELLS}"));
             }
         }
+        if let Some(cover) = films.cover.filter(|cover| cover.len() != TILE_CELLS) {
+            let cells = cover.len();
+            return wrong(format!("a film covers {cells} cells, not {TILE_CELLS}"));
+        }
         let samples = studio.wavelengths();
         let (values, want) = match films.under {
             Under::Even(values) => (values.len(), samples),
@@ -193,6 +197,7 @@ mod tests {
             .map(|paints| FilmPlanes {
                 paints,
                 opacity: 1.0,
+                cover: None,
                 under: Under::Even(&ground),
             })
             .collect();
@@ -223,6 +228,7 @@ mod tests {
             let films = FilmPlanes {
                 paints: &paints,
                 opacity: 1.0,
+                cover: None,
                 under: Under::Even(ground),
             };
             check(&studio, &[films]).map_err(|error| error.to_string())

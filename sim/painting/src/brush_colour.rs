@@ -59,6 +59,7 @@ impl Carried {
         let planes = FilmPlanes {
             paints: &paints,
             opacity: 1.0,
+            cover: None,
             under: Under::Even(hair),
         };
         let mut rgb = [const { Vec::new() }; 3];
