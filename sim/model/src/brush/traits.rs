@@ -82,9 +82,9 @@ impl BrushTraits {
     /// Share of the difference between texels that evens out along a reference cell.
     const CREEP: f64 = 0.03;
     /// Shares of the difference between films that even out along a reference cell: between strips, and along them.
-    const SEEP: [f64; 2] = [0.4, 0.35];
+    const SEEP: [f64; 2] = [0.38, 0.4];
     /// Thickness of the film that clings to a strip, µm.
-    const CLINGS_UM: f64 = 260.0;
+    const CLINGS_UM: f64 = 323.0;
     /// Difference between the films of two strips that stays, by a full film: so a bristle keeps its streak.
     pub const HOLDS: f64 = 0.3;
 
@@ -175,7 +175,7 @@ pub(crate) const FILM_OVER: f64 = 2.0;
 pub(crate) const BLADE_OVER: f64 = 3.0;
 /// Share of the motion of bristles that paint follows: it sticks to them about as to the canvas (a half in Baxter 2004,
 /// § 6.4.2). Paint in front of a blade goes with it.
-pub(crate) const FOLLOWS: f32 = 0.45;
+pub(crate) const FOLLOWS: f32 = 0.43;
 /// [`FOLLOWS`] of a blade.
 pub(crate) const BLADE_FOLLOWS: f32 = 1.0;
 /// Share of the lift that remains where the head is fully pressed: bristles never lie in one plane.

@@ -4,9 +4,9 @@
 //! is one [`PaintModel`](maulstick_model::interface::PaintModel); [`stages`] holds its stages, a file each, and
 //! levelling at rest.
 //!
-//! The trace of a stroke is decided where bristles lift off: a film that bridges a gap splits in its middle, and levels
-//! as far as the yield stress of worked paint allows. Paint flows within the head every second step, with strips taking
-//! turns: all strips at once, or longer intervals, would show along the stroke. `maulstick bench looks` measures
+//! The trace of a stroke is decided where bristles lift off: a film that bridges a gap splits three to seven, and
+//! levels as far as the yield stress of what the brush has left allows. Paint flows within the head in every step: strips
+//! that take turns would show along the stroke. `maulstick bench looks` measures
 //! ridges, streaks and films.
 //!
 //! A loaded round brush drawn 10 mm over a level ground:
@@ -78,16 +78,15 @@
 //!
 //! # Notes on the step
 //!
-//! - Order (Baxter 2004, fig. 6.3): footprint, velocity, advection, exchange both ways, flow within the head. Flow
-//!   within strips and between neighbours take turns, step by step, so that no step shows along a stroke. Every stage
+//! - Order (Baxter 2004, fig. 6.3): footprint, velocity, advection, exchange both ways, flow within the head. Every stage
 //!   has an f64 oracle in `tests/oracle`, and every comparison a seeded fault.
 //! - Velocities are found for faces between cells; paint goes through them one axis after the other with van Leer's
 //!   limiter, truncated to quanta. Nothing divides converging paint, so it piles up. A global pressure would add to the
 //!   velocities of the faces.
 //! - The squish −c·∇p is an explicit diffusion of coefficient c·h, bounded by .04. Central differences in cells grow
 //!   speckles above .2; differences across faces do not.
-//! - Between the ride of a bristle and the relief lies a gap, which its film fills beyond the gap's height, 64
-//!   times as fast as films even out; a bridging film splits in its middle. So a full brush fills most of the tooth, an
+//! - Between the ride of a bristle and the relief lies a gap, which its film fills beyond the gap's height, 16
+//!   times as fast as films even out; a bridging film splits, and the bristle keeps 3/10. So a full brush fills most of the tooth, an
 //!   empty one catches on peaks, a light one on dry ridges. A brush with a limit (a glaze) leaves up to as much again
 //!   in hollows, and has no limit on a palette, where paints are mixed.
 //! - Colour travels by a skin that bristle and paint shear between them wherever their films touch, both ways, so also
@@ -100,7 +99,7 @@
 //!   takes up stays near its tips, and a brush that is painted out starves bristle by bristle.
 //! - Levelling belongs to the stroke and lasts a second. Under moving bristles, a hundredth of a second a cell,
 //!   levelling is not measurable. Heights go through sixteen rounds before all paints follow by their sum; blocks
-//!   without flow rest; cells under 1 mm flow on coarser grids first. Paint that the brush has left yields at 55 Pa,
+//!   without flow rest; cells under 1 mm flow on coarser grids first. Paint that the brush has left yields at 61 Pa,
 //!   which holds the ridges of bristles; thinner takes that away, and thinned paint wets bare ground.
 
 #[cfg(feature = "device")]

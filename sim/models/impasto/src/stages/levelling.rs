@@ -51,7 +51,7 @@ impl Body {
     /// Paint from the tube once the brush has left it: oil colours yield at 50 to 500 Pa at rest (Salvant Plisson et al.
     /// 2014), of which the lower end is back within a tenth of a second after a brush has sheared it apart.
     pub const TUBE: Self = Self {
-        yield_pa: 50.0,
+        yield_pa: 61.0,
         viscosity_pa_s: 20.0,
     };
 }
@@ -327,7 +327,7 @@ impl<'a> Run<'a> {
 ///
 /// Over a wave that advances by θ a cell, differences have the factor (sin ½θ/½θ)³ of the third derivative; the square
 /// of 2 sin ½θ is the fall of curvature by that of height, and this is (½θ/sin ½θ)³ within 1 % for waves of three cells
-/// and more, within 13 % for shorter ones.
+/// and more, within 14 % for shorter ones.
 #[inline(always)]
 #[must_use]
 pub fn exact(bends: f32, drop: f32) -> f32 {

@@ -78,8 +78,8 @@ impl Film<'_> {
         let rounding = 8.0 * CELL_M * EPS;
         let off = 24.0 * rounding * (TENSION / CELL_M.powi(3) + WEIGHT / CELL_M);
         let off = off + 8.0 * EPS * gradient.abs();
-        // Differences of a wave tell its length, and so its stress: by (½θ/sin ½θ)³, of which .7 % may be missing, and
-        // 13 % where it is shorter than three cells.
+        // Differences of a wave tell its length, and so its stress: by (½θ/sin ½θ)³, of which 1 % may be missing, and
+        // 14 % where it is shorter than three cells.
         let (bends, drop, rounding) = (curved * CELL_M.powi(3), s - s_next, 24.0 * rounding);
         let exact = |[bent, fallen]: [f64; 2]| {
             let short = (bends + bent * rounding) / (drop + fallen * rounding);
@@ -91,9 +91,9 @@ impl Film<'_> {
                 1.0
             };
             let near = if short < 3.0 {
-                [0.993, 1.007]
+                [0.99, 1.01]
             } else {
-                [0.94, 1.13]
+                [0.94, 1.14]
             };
             near.map(|by| by * exact)
         };
