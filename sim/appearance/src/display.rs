@@ -50,10 +50,11 @@ impl WetFilms {
         rgb.iter_mut()
             .for_each(|plane| plane.resize(TILE_CELLS, 0.0));
         let [red, green, blue] = &mut rgb;
+        let covers = self.covers();
         let planes = FilmPlanes {
             paints: &self.planes(),
             opacity: 1.0,
-            cover: self.covers().as_deref(),
+            cover: covers.as_deref(),
             under,
         };
         studio.shade(&planes, [red, green, blue]);
