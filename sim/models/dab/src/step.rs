@@ -4,7 +4,6 @@ use maulstick_brush::HeadPose;
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_canvas::window::Area;
 use maulstick_model::brush::head::low_bounds;
-use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::footprint::Footprint;
 use maulstick_model::footprint::lying::Lying;
 use maulstick_model::interface::{PaintModel, Step, StepReport, Sweep, Transfer};

@@ -88,6 +88,17 @@ struct Expected {
     overfilled: usize,
 }
 
+impl Expected {
+    /// Adds the cases of another scene.
+    fn count(&mut self, other: &Self) {
+        self.deposits += other.deposits;
+        self.uptakes += other.uptakes;
+        self.swaps += other.swaps;
+        self.overdrawn += other.overdrawn;
+        self.overfilled += other.overfilled;
+    }
+}
+
 fn film(load: &BrushLoad, texel: usize) -> f64 {
     let films = (0..SLOTS).filter_map(|slot| load.film_of(slot));
     films.map(|film| f64::from(film[texel])).sum()
@@ -268,11 +279,7 @@ fn paint_goes_both_ways_as_algorithm_3_says() {
             let counted = f64::from(scene.load.film(texel));
             assert_eq!(counted, film(&scene.load, texel), "counted afresh");
         }
-        seen.deposits += expected.deposits;
-        seen.uptakes += expected.uptakes;
-        seen.swaps += expected.swaps;
-        seen.overdrawn += expected.overdrawn;
-        seen.overfilled += expected.overfilled;
+        seen.count(&expected);
         let most = expected
             .cells
             .iter()
