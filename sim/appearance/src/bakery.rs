@@ -7,7 +7,6 @@ use maulstick_canvas::dry::{DryLayer, DryStack};
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::tile::TileId;
 use maulstick_optics::backend::FilmBackend;
-use maulstick_optics::edge::covers;
 use maulstick_optics::{FilmPlanes, Under};
 
 use crate::appearance::Appearance;
@@ -44,14 +43,12 @@ fn bake(
                 slots.map(|(slot, film)| (*slot, film.as_slice())).collect()
             })
             .collect();
-        let covers: Vec<Option<Vec<f32>>> = paints.iter().map(|paints| covers(paints)).collect();
         let batch: Vec<FilmPlanes<'_>> = at
             .iter()
-            .zip(paints.iter().zip(&covers))
-            .map(|((tile, layer), (paints, cover))| FilmPlanes {
+            .zip(&paints)
+            .map(|((tile, layer), paints)| FilmPlanes {
                 paints,
                 opacity: look.opacity(layer.number),
-                cover: cover.as_deref(),
                 under: match &baked[*tile] {
                     Some(planes) => Under::Planes(planes),
                     None => tiles[*tile].ground,
@@ -62,7 +59,6 @@ fn bake(
             let nothing = |films: &FilmPlanes<'_>| {
                 let nothing = FilmPlanes {
                     paints: &[],
-                    cover: None,
                     ..*films
                 };
                 look.studio.bake(&nothing, TILE_CELLS)

@@ -59,7 +59,6 @@ impl HeapColours {
         let planes = FilmPlanes {
             paints: &paints,
             opacity: 1.0,
-            cover: None,
             under: Under::Even(ground),
         };
         studio.shade(&planes, [red, green, blue]);

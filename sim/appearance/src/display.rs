@@ -6,7 +6,6 @@ use maulstick_canvas::dry::DryStack;
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::tile::Tile;
-use maulstick_optics::edge::covers;
 use maulstick_optics::light::HeightField;
 use maulstick_optics::light::gloss::{merged_gloss, roughness};
 use maulstick_optics::{FilmPlanes, Studio, Under};
@@ -37,12 +36,6 @@ impl WetFilms {
         films.map(|(slot, film)| (*slot, film.as_slice())).collect()
     }
 
-    /// The share of each cell that the films cover; none where they have no edge.
-    #[must_use]
-    pub fn covers(&self) -> Option<Vec<f32>> {
-        covers(&self.planes())
-    }
-
     /// Colours of the films over their ground: linear red, green, blue.
     #[must_use]
     pub fn shade(&self, studio: &Studio, under: Under<'_>) -> [Vec<f32>; 3] {
@@ -50,11 +43,9 @@ impl WetFilms {
         rgb.iter_mut()
             .for_each(|plane| plane.resize(TILE_CELLS, 0.0));
         let [red, green, blue] = &mut rgb;
-        let covers = self.covers();
         let planes = FilmPlanes {
             paints: &self.planes(),
             opacity: 1.0,
-            cover: covers.as_deref(),
             under,
         };
         studio.shade(&planes, [red, green, blue]);

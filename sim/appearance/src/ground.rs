@@ -349,7 +349,6 @@ mod tests {
         let films = FilmPlanes {
             paints: &[],
             opacity: 1.0,
-            cover: None,
             under: tile.under(),
         };
         let shaded = CpuFilms::new().shade(&studio, &[films]).expect("shaded");

@@ -57,6 +57,7 @@ pub mod bands;
 pub mod blank_surface;
 pub mod colouring;
 pub mod display;
+mod edge;
 mod error;
 pub mod ground;
 pub mod heap;

@@ -11,6 +11,7 @@ use crate::appearance::Appearance;
 use crate::blank_surface::BlankSurface;
 use crate::colouring::Colouring;
 use crate::display::{DisplayTile, WetFilms};
+use crate::edge::covers;
 use crate::show_paint::{Seen, ShowPaint, counted_films};
 
 /// A surface without its painting, and the display of the paint that comes on it.
@@ -64,6 +65,19 @@ impl ShownSurface {
         heights
     }
 
+    /// Lets the ground show beside paint that covers a cell in part.
+    fn uncover(&self, id: TileId, look: &Appearance, shown: &mut DisplayTile) {
+        let Some(covers) = covers(&shown.height) else {
+            return;
+        };
+        let bare = WetFilms::default().shade(&look.studio, self.ground.tile(id).under());
+        for (plane, bare) in shown.rgb.iter_mut().zip(&bare) {
+            for ((channel, bare), cover) in plane.iter_mut().zip(bare).zip(&covers) {
+                *channel = cover * *channel + (1.0 - cover) * bare;
+            }
+        }
+    }
+
     /// The display of a tile on it; `tile` is `None` where nothing was painted. `rgb` are the colours of its wet `films`
     /// over the ground under them.
     #[must_use]
@@ -77,6 +91,9 @@ impl ShownSurface {
         let is_shaded = self.shown.colouring() == Colouring::Films;
         let own = (!is_shaded).then(|| WetFilms::of(tile));
         let mut shown = DisplayTile::of(tile, (own.as_ref().unwrap_or(films), rgb), look.thinner);
+        if is_shaded {
+            self.uncover(id, look, &mut shown);
+        }
         if let Some(tile) = tile {
             let seen = Seen {
                 look,

@@ -4,7 +4,6 @@ use maulstick_appearance::colouring::{Colouring, EncodedTile, VolumeColours};
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_optics::colour::srgb_decode;
-use maulstick_optics::edge::covers;
 use maulstick_optics::{FilmPlanes, Under};
 
 use crate::cell::encoded;
@@ -116,7 +115,6 @@ impl Shown {
                 let bare = FilmPlanes {
                     paints: &[],
                     opacity: 1.0,
-                    cover: None,
                     under: ground,
                 };
                 palette.look.studio.shade(&bare, [red, green, blue]);
@@ -160,11 +158,9 @@ impl Shown {
                     .collect();
                 let paints: Vec<(usize, &[f32])> =
                     films.iter().map(|(slot, film)| (*slot, &**film)).collect();
-                let cover = covers(&paints);
                 let film = FilmPlanes {
                     paints: &paints,
                     opacity: kind.opacity(),
-                    cover: cover.as_deref(),
                     under: Under::Planes(under),
                 };
                 *under = palette.look.studio.bake(&film, TILE_CELLS);

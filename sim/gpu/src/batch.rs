@@ -14,11 +14,8 @@ struct TileRecord {
     under: u32,
     under_sample: u32,
     under_cell: u32,
-    cover: u32,
 }
 
-/// Place of the cover of films that cover all.
-const WHOLE: u32 = u32::MAX;
 /// Number of wavelengths that a shader computes together.
 const QUAD: usize = 4;
 
@@ -57,7 +54,6 @@ impl<'a> Batch<'a> {
                 Under::Even(values) => (values, [1, 0]),
                 Under::Planes(values) => (values, [TILE_CELLS as u32, 1]),
             };
-            let all = planes + films.paints.len();
             batch.records.push(TileRecord {
                 paints: films.paints.len() as u32,
                 thickness: (planes * TILE_CELLS) as u32,
@@ -65,14 +61,14 @@ impl<'a> Batch<'a> {
                 under: reflectances as u32,
                 under_sample,
                 under_cell,
-                cover: films.cover.map_or(WHOLE, |_| (all * TILE_CELLS) as u32),
             });
             batch.under.push(cast_slice(under));
             reflectances += under.len();
-            planes = all + films.cover.iter().len();
-            let thickness = films.paints.iter().map(|(_, plane)| *plane);
-            let thickness = thickness.chain(films.cover).map(cast_slice::<f32, u8>);
-            batch.thickness.extend(thickness);
+            planes += films.paints.len();
+            let thickness = films.paints.iter();
+            batch
+                .thickness
+                .extend(thickness.map(|(_, plane)| cast_slice::<f32, u8>(plane)));
             for quad in quads.clone() {
                 for (slot, _) in films.paints {
                     let table = studio.paint(*slot);
@@ -108,7 +104,7 @@ fn largest(studio: &Studio, films: &FilmPlanes<'_>, planes: usize) -> usize {
         Under::Even(_) => 0,
         Under::Planes(_) => studio.wavelengths(),
     };
-    planes.max(films.paints.len() + 1).max(under) * TILE_CELLS * size_of::<f32>()
+    planes.max(films.paints.len()).max(under) * TILE_CELLS * size_of::<f32>()
 }
 
 /// Number of leading `tiles` that fit buffers of `bytes`, at least one.

@@ -33,7 +33,7 @@
 //! // From 0 to 80 µm along the tile.
 //! let thickness_m: Vec<f32> = (0..TILE_CELLS).map(|cell| 8e-5 * cell as f32 / TILE_CELLS as f32).collect();
 //! let white = vec![0.9; studio.wavelengths()];
-//! let tile = FilmPlanes { paints: &[(blue, &thickness_m)], opacity: 1.0, cover: None, under: Under::Even(&white) };
+//! let tile = FilmPlanes { paints: &[(blue, &thickness_m)], opacity: 1.0, under: Under::Even(&white) };
 //! let [red, ..] = backend.shade(&studio, &[tile])?.remove(0);
 //! let [on_cpu, ..] = CpuFilms::new().shade(&studio, &[tile])?.remove(0);
 //! println!("{}: red falls from {:.2} to {:.2}", backend.name(), red[0], red[TILE_CELLS - 1]);

@@ -77,14 +77,9 @@ fn a_fault_would_be_found() {
             plane.iter_mut().for_each(|d| *d *= 1.01);
         }
     });
-    let cover = fault(&films, &|film| {
-        let cells = film.cover.iter_mut().flatten();
-        cells.for_each(|cover| *cover *= 0.999);
-    });
     for backend in &mut backends() {
         for (told, films) in [
             (&opacity, &films[..]),
-            (&cover, &films[..]),
             (&one_cell, &films[1..2]),
             (&one_paint, &films[..]),
         ] {

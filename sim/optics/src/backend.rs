@@ -77,10 +77,6 @@ pub fn check(studio: &Studio, tiles: &[FilmPlanes<'_>]) -> Result<(), BackendErr
                 return wrong(format!("a paint has {cells} cells, not {TILE_CELLS}"));
             }
         }
-        if let Some(cover) = films.cover.filter(|cover| cover.len() != TILE_CELLS) {
-            let cells = cover.len();
-            return wrong(format!("a film covers {cells} cells, not {TILE_CELLS}"));
-        }
         let samples = studio.wavelengths();
         let (values, want) = match films.under {
             Under::Even(values) => (values.len(), samples),
@@ -197,7 +193,6 @@ mod tests {
             .map(|paints| FilmPlanes {
                 paints,
                 opacity: 1.0,
-                cover: None,
                 under: Under::Even(&ground),
             })
             .collect();
@@ -228,7 +223,6 @@ mod tests {
             let films = FilmPlanes {
                 paints: &paints,
                 opacity: 1.0,
-                cover: None,
                 under: Under::Even(ground),
             };
             check(&studio, &[films]).map_err(|error| error.to_string())

@@ -51,8 +51,6 @@
 //!   error by only a hundredth, and without them XYZ of any reflectance lies between black and white.
 //! - Paint mixes linearly in K and S. A film costs one exponential and one division a wavelength; the surface
 //!   correction is applied once, on top.
-//! - A cell at the edge of a film is covered by its share of the neighbours' thickness (`edge`), so an edge is no
-//!   staircase, in views and exports.
 //! - Views compute films on two threads or on a graphics device (`FilmBackend`), exports on the processor alone, for
 //!   the same bytes everywhere. A device that fails is replaced by the processor.
 //! - Light is a pass over unlit colour, gloss and height, here for exports and in `ui/src/render/shaders` for the view;
@@ -66,7 +64,6 @@
 
 pub mod backend;
 pub mod colour;
-pub mod edge;
 mod fitted;
 pub mod gamut;
 pub mod icc;

@@ -140,8 +140,6 @@ pub struct FilmPlanes<'a> {
     pub paints: &'a [(usize, &'a [f32])],
     /// Factor on the film's optical thickness; its height stays.
     pub opacity: f32,
-    /// The share of each cell that the film covers, more than 0; none where it covers all.
-    pub cover: Option<&'a [f32]>,
     /// Its ground.
     pub under: Under<'a>,
 }
@@ -169,24 +167,6 @@ impl FilmPlanes<'_> {
         if let Some(one) = rest.first_chunk::<1>() {
             self.add(one, paints, sample, start, sums);
         }
-        if let Some(cover) = self.cover {
-            for sum in sums {
-                let cells = sum.iter_mut().zip(&cover[start..]);
-                cells.for_each(|(sum, cover)| *sum /= cover);
-            }
-        }
-    }
-
-    /// The share of each of the cells `start`.. that the film covers.
-    #[inline]
-    fn cover(&self, start: usize) -> [f32; RUN] {
-        let mut run = [1.0; RUN];
-        if let Some(cover) = self.cover {
-            run.iter_mut()
-                .zip(&cover[start..])
-                .for_each(|(to, of)| *to = *of);
-        }
-        run
     }
 
     /// Adds K·d and S·d of several paints; several at once reduce the memory traffic of the sums.
@@ -327,13 +307,12 @@ impl Studio {
         let distinct = if bare { cells.min(1) } else { cells };
         for start in (0..distinct).step_by(RUN) {
             let mut sum = [[0.0f32; RUN]; 3];
-            let cover = films.cover(start);
             for (sample, weight) in self.rgb.iter().enumerate() {
                 films.thickness(&self.paints, sample, start, &mut thickness);
                 let ([kd, sd], under) = (&thickness, films.under.run(sample, cells, start));
                 let [r, g, b] = &mut sum;
                 for i in 0..RUN {
-                    let film = film_over_f32(kd[i], sd[i], under[i]).beside(cover[i], under[i]);
+                    let film = film_over_f32(kd[i], sd[i], under[i]);
                     let leaving = open * film.n / (film.m - k2 * film.n);
                     r[i] += weight[0] * leaving;
                     g[i] += weight[1] * leaving;
@@ -363,10 +342,9 @@ impl Studio {
             for start in (0..cells).step_by(RUN) {
                 films.thickness(&self.paints, sample, start, &mut thickness);
                 let ([kd, sd], under) = (&thickness, films.under.run(sample, cells, start));
-                let cover = films.cover(start);
                 let mut run = [0.0f32; RUN];
                 for i in 0..RUN {
-                    let film = film_over_f32(kd[i], sd[i], under[i]).beside(cover[i], under[i]);
+                    let film = film_over_f32(kd[i], sd[i], under[i]);
                     run[i] = (film.n / film.m).clamp(0.0, 1.0);
                 }
                 let end = (start + RUN).min(cells);

@@ -59,7 +59,6 @@ impl Carried {
         let planes = FilmPlanes {
             paints: &paints,
             opacity: 1.0,
-            cover: None,
             under: Under::Even(hair),
         };
         let mut rgb = [const { Vec::new() }; 3];

@@ -108,7 +108,6 @@ mod tests {
         let tile = FilmPlanes {
             paints: &[],
             opacity: 1.0,
-            cover: None,
             under: Under::Even(&ground),
         };
         let mut films = SteadyFilms::new(Box::new(Frail { batches: 0 }));

@@ -197,15 +197,12 @@ impl Pyramid {
         let bare = &surface.bare;
         let films: Vec<WetFilms> = ids.iter().map(|id| bare.films(painted(id))).collect();
         let planes: Vec<Vec<(usize, &[f32])>> = films.iter().map(WetFilms::planes).collect();
-        let covers: Vec<Option<Vec<f32>>> = films.iter().map(WetFilms::covers).collect();
         let batch: Vec<FilmPlanes<'_>> = planes
             .iter()
-            .zip(&covers)
             .zip(baked.iter().zip(&grounds))
-            .map(|((paints, cover), (baked, ground))| FilmPlanes {
+            .map(|(paints, (baked, ground))| FilmPlanes {
                 paints,
                 opacity: 1.0,
-                cover: cover.as_deref(),
                 under: match baked {
                     Some(baked) => Under::Planes(baked),
                     None => ground.under(),

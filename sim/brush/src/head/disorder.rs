@@ -12,11 +12,11 @@ const STRAY: [f32; 2] = [0.08, 0.015];
 /// Shortening of the shortest bristle of hog and of soft hair, by the head's length.
 const RAGGED: [f64; 2] = [0.02, 0.006];
 /// Additional shortening of a single bristle at the rim, by its own.
-const RIM: f32 = 4.3;
+const RIM: f32 = 4.0;
 /// Power of the place from the middle to the rim by which that grows.
 const RIM_POWER: i32 = 8;
 /// Way along which tresses regroup, m.
-const REGROUPS_M: f64 = 21.375e-3;
+const REGROUPS_M: f64 = 25e-3;
 /// Numbers of the planes of noise: across the width, across the thickness, along.
 const PLANES: [u64; 3] = [11, 12, 13];
 

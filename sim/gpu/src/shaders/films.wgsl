@@ -17,11 +17,7 @@ struct Tile {
     // Strides of the ground: from one wavelength to the next, and from cell to cell.
     under_sample: u32,
     under_cell: u32,
-    // Offset of the share of each cell that the film covers; WHOLE where it covers all.
-    cover: u32,
 }
-
-const WHOLE = 0xffffffffu;
 
 @group(0) @binding(0) var<storage, read> tiles: array<Tile>;
 // Red, green and blue of four wavelengths, for all of them; then for each tile K and S of each paint
@@ -88,10 +84,6 @@ fn film(tile: Tile, cell: u32, quad: u32) -> Ratio {
         kd += optics[at] * d;
         sd += optics[at + 1u] * d;
     }
-    var cover = 1.0;
-    if tile.cover != WHOLE {
-        cover = thickness[tile.cover + cell];
-    }
     let sample = 4u * quad;
     let under = vec4(
         ground(tile, cell, sample),
@@ -99,7 +91,5 @@ fn film(tile: Tile, cell: u32, quad: u32) -> Ratio {
         ground(tile, cell, sample + 2u),
         ground(tile, cell, sample + 3u),
     );
-    let over = film_over(kd / cover, sd / cover, under);
-    // The rest of the cell is ground.
-    return Ratio(cover * over.n + (1.0 - cover) * under * over.m, over.m);
+    return film_over(kd, sd, under);
 }

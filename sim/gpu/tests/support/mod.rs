@@ -20,8 +20,6 @@ pub(crate) fn unit(random: &mut Pcg64) -> f64 {
 pub(crate) struct Film {
     pub(crate) paints: Vec<(usize, Vec<f32>)>,
     pub(crate) opacity: f32,
-    /// The share of each cell that they cover, if not all.
-    pub(crate) cover: Option<Vec<f32>>,
     /// A value a wavelength, or a plane a wavelength.
     pub(crate) under: Vec<f32>,
 }
@@ -51,11 +49,6 @@ impl Film {
             };
             drawn.push((slot, (0..TILE_CELLS).map(|_| cell()).collect()));
         }
-        let cover = (unit(random) < 0.5).then(|| {
-            (0..TILE_CELLS)
-                .map(|_| 0.02 + 0.98 * unit(random) as f32)
-                .collect()
-        });
         let values = if planes {
             samples * TILE_CELLS
         } else {
@@ -64,7 +57,6 @@ impl Film {
         Self {
             paints: drawn,
             opacity: [1.0, 0.5, 0.125][(3.0 * unit(random)) as usize],
-            cover,
             under: (0..values).map(|_| unit(random) as f32).collect(),
         }
     }
@@ -85,17 +77,11 @@ impl Film {
             };
             self.paints.iter().map(of).sum::<f64>() * f64::from(self.opacity)
         };
-        let cover = self
-            .cover
-            .as_ref()
-            .map_or(1.0, |cover| f64::from(cover[cell]));
         let under = match self.under() {
             Under::Even(values) => values[sample],
             Under::Planes(values) => values[sample * TILE_CELLS + cell],
         };
-        let under = f64::from(under);
-        let film = km::over(km::film(sum(0) / cover, sum(1) / cover), under);
-        cover * film + (1.0 - cover) * under
+        km::over(km::film(sum(0), sum(1)), f64::from(under))
     }
 
     /// Linear sRGB of a cell without gloss.
@@ -147,7 +133,6 @@ pub(crate) fn as_tiles<T>(films: &[Film], work: impl FnOnce(&[FilmPlanes<'_>]) -
         .map(|(film, paints)| FilmPlanes {
             paints,
             opacity: film.opacity,
-            cover: film.cover.as_deref(),
             under: film.under(),
         })
         .collect();

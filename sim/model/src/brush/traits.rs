@@ -82,9 +82,9 @@ impl BrushTraits {
     /// Share of the difference between texels that evens out along a reference cell.
     const CREEP: f64 = 0.03;
     /// Shares of the difference between films that even out along a reference cell: between strips, and along them.
-    const SEEP: [f64; 2] = [0.38, 0.4];
+    const SEEP: [f64; 2] = [0.25, 0.35];
     /// Thickness of the film that clings to a strip, µm.
-    const CLINGS_UM: f64 = 323.0;
+    const CLINGS_UM: f64 = 250.0;
     /// Difference between the films of two strips that stays, by a full film: so a bristle keeps its streak.
     pub const HOLDS: f64 = 0.3;
 
@@ -99,9 +99,7 @@ impl BrushTraits {
         let steps = cell_m / REFERENCE_CELL_M;
         let step_cells = Scale { cell_m, zoom }.step_cells(rigid || file.surface.is_some());
         let flow = steps * step_cells;
-        let part =
-            |of_reference: f64, flow| 1.0 - exp(maulstick_num::ln(1.0 - of_reference) * flow);
-        let share = |of_reference: f64| part(of_reference, flow);
+        let share = |of_reference: f64| 1.0 - exp(maulstick_num::ln(1.0 - of_reference) * flow);
         Self {
             step_cells: step_cells as f32,
             parts: step_cells.ceil() as u32,
@@ -133,8 +131,7 @@ impl BrushTraits {
             refill: share(Self::REFILL),
             creep: share(Self::CREEP),
             seep: Seep {
-                // Paint seeps as it diffuses: by the square of the distance, which grows as the root of how many it stands for.
-                beside: part(Self::SEEP[0], flow / file.strips.stands_for),
+                beside: share(Self::SEEP[0]),
                 along: share(Self::SEEP[1]),
                 clings: quanta(Self::CLINGS_UM),
             },
@@ -175,7 +172,7 @@ pub(crate) const FILM_OVER: f64 = 2.0;
 pub(crate) const BLADE_OVER: f64 = 3.0;
 /// Share of the motion of bristles that paint follows: it sticks to them about as to the canvas (a half in Baxter 2004,
 /// § 6.4.2). Paint in front of a blade goes with it.
-pub(crate) const FOLLOWS: f32 = 0.43;
+pub(crate) const FOLLOWS: f32 = 0.45;
 /// [`FOLLOWS`] of a blade.
 pub(crate) const BLADE_FOLLOWS: f32 = 1.0;
 /// Share of the lift that remains where the head is fully pressed: bristles never lie in one plane.

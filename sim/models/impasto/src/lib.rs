@@ -6,8 +6,7 @@
 //!
 //! The trace of a stroke is decided where bristles lift off: a film that bridges a gap splits three to seven, and
 //! levels as far as the yield stress of what the brush has left allows. Paint flows within the head in every step: strips
-//! that take turns would show along the stroke. `maulstick bench looks` measures
-//! ridges, streaks and films.
+//! that take turns would show along the stroke. `maulstick bench looks` measures ridges, streaks and films.
 //!
 //! A loaded round brush drawn 10 mm over a level ground:
 //!
@@ -95,11 +94,11 @@
 //!   what stands above its edge and fills what lies below: it scrapes and deposits slabs.
 //! - The lowest strip of a cell depends on the cell size. To keep the trace of a brush independent of it, paint flows
 //!   in every strip and seeps between neighbours, down to a difference held by the yield stress, which keeps streaks.
-//!   Between thinned strips it seeps half as fast, as in diffusion. Along a strip a thin film clings: what a clean brush
-//!   takes up stays near its tips, and a brush that is painted out starves bristle by bristle.
+//!   Along a strip a thin film clings: what a clean brush takes up stays near its tips, and a brush that is painted out
+//!   starves bristle by bristle.
 //! - Levelling belongs to the stroke and lasts a second. Under moving bristles, a hundredth of a second a cell,
 //!   levelling is not measurable. Heights go through sixteen rounds before all paints follow by their sum; blocks
-//!   without flow rest; cells under 1 mm flow on coarser grids first. Paint that the brush has left yields at 61 Pa,
+//!   without flow rest; cells under 1 mm flow on coarser grids first. Paint that the brush has left yields at 50 Pa,
 //!   which holds the ridges of bristles; thinner takes that away, and thinned paint wets bare ground.
 
 #[cfg(feature = "device")]

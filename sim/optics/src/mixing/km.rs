@@ -68,18 +68,6 @@ pub struct Ratio {
     pub m: f32,
 }
 
-impl Ratio {
-    /// The mean of this film on a share of a cell, and of the ground of reflectance `under` on its rest.
-    #[must_use]
-    #[inline]
-    pub fn beside(self, share: f32, under: f32) -> Self {
-        Self {
-            n: share * self.n + (1.0 - share) * under * self.m,
-            m: self.m,
-        }
-    }
-}
-
 /// The film of `kd` = K·d and `sd` = S·d, both ≥ 0, over a ground of reflectance `under`, 0 to 1.
 #[must_use]
 #[inline]

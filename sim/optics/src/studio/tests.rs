@@ -22,7 +22,6 @@ fn shade(studio: &Studio, thickness: [f32; 2], ground: f32) -> [f32; 3] {
         &FilmPlanes {
             paints: &paints,
             opacity: 1.0,
-            cover: None,
             under: Under::Even(&ground),
         },
         [r, g, b],
@@ -119,7 +118,6 @@ fn off_from_composed(fault: f32) -> f64 {
         let films = FilmPlanes {
             paints: &paints,
             opacity: opacity[number] * fault,
-            cover: None,
             under: baked
                 .as_ref()
                 .map_or(Under::Even(&ground), |planes| Under::Planes(planes)),
@@ -186,43 +184,4 @@ fn without_adaptation_lamp_light_is_yellow() {
     );
     let [r, g, b] = white(false);
     assert!(r > 1.5 && b < 0.5 && g < r, "{r} {g} {b}");
-}
-
-/// A cell of which a film covers a part shows the film's colour in that part, and the ground's in the rest.
-#[test]
-fn a_film_over_a_part_of_a_cell_lets_the_ground_show() {
-    let studio = studio(&["Ultramarine Blue"]);
-    let ground = vec![0.9f32; studio.wavelengths()];
-    let baked = |thickness: f32, cover: Option<f32>| {
-        let (film, cover) = (vec![thickness; 70], cover.map(|cover| vec![cover; 70]));
-        let films = FilmPlanes {
-            paints: &[(0, &film)],
-            opacity: 1.0,
-            cover: cover.as_deref(),
-            under: Under::Even(&ground),
-        };
-        studio
-            .bake(&films, 70)
-            .iter()
-            .step_by(70)
-            .copied()
-            .collect::<Vec<f32>>()
-    };
-    let (whole, part, even) = (
-        baked(200e-6, None),
-        baked(60e-6, Some(0.3)),
-        baked(60e-6, None),
-    );
-    let mean = |film: &[f32]| {
-        film.iter()
-            .map(|film| 0.3 * film + 0.7 * 0.9)
-            .collect::<Vec<_>>()
-    };
-    let off = |one: &[f32], two: &[f32]| {
-        let pairs = one.iter().zip(two);
-        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
-    };
-    assert!(off(&part, &mean(&whole)) < 1e-5);
-    assert!(off(&part, &even) > 0.3, "an even film passes");
-    assert!(off(&baked(60e-6, Some(1.0)), &even) < 1e-6);
 }

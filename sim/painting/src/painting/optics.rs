@@ -205,7 +205,7 @@ impl Optics {
         let veiled = layers.filter(|layer| layer.opacity != 1.0);
         let veiled: Vec<(u32, f32)> = veiled.map(|layer| (layer.number, layer.opacity)).collect();
         let hash = self.library.hash();
-        let made_of = format!("5 {light:?} {veiled:?} {materials:?} {hash}");
+        let made_of = format!("6 {light:?} {veiled:?} {materials:?} {hash}");
         Arc::make_mut(&mut self.look).note(&made_of);
     }
 }

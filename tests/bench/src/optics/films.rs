@@ -81,7 +81,6 @@ pub(crate) fn tiles<'a>(
         .map(|(paints, under)| FilmPlanes {
             paints,
             opacity: 1.0,
-            cover: None,
             under: Under::Planes(under),
         })
         .collect()

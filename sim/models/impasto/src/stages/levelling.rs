@@ -51,7 +51,7 @@ impl Body {
     /// Paint from the tube once the brush has left it: oil colours yield at 50 to 500 Pa at rest (Salvant Plisson et al.
     /// 2014), of which the lower end is back within a tenth of a second after a brush has sheared it apart.
     pub const TUBE: Self = Self {
-        yield_pa: 61.0,
+        yield_pa: 50.0,
         viscosity_pa_s: 20.0,
     };
 }
