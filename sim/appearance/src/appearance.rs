@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use maulstick_optics::Studio;
+use maulstick_optics::light::gloss::dry_gloss;
+use maulstick_optics::oil::oil_share;
+use maulstick_optics::{Paint, Studio};
 use maulstick_types::scene::Layer;
 
 /// Conversion of a tile's paint into colour.
@@ -12,6 +14,8 @@ pub struct Appearance {
     pub studio: Studio,
     /// Slot of the thinner, if it is in use.
     pub thinner: Option<usize>,
+    /// Gloss of dry paint by slot.
+    glosses: BTreeMap<usize, f32>,
     /// Factor on the optical thickness of dry layers by number, where it is not 1.
     opacities: BTreeMap<u32, f32>,
     relief: f32,
@@ -26,11 +30,28 @@ impl Appearance {
         Self {
             studio,
             thinner: None,
+            glosses: BTreeMap::new(),
             opacities: BTreeMap::new(),
             relief: 1.0,
             generation: 0,
             print: 0,
         }
+    }
+
+    /// Adds the properties of the paint in a slot that its optics lack.
+    pub fn know(&mut self, slot: usize, paint: &Paint) {
+        if paint.is_thinner() {
+            self.thinner = Some(slot);
+        }
+        let gloss = dry_gloss(oil_share(&paint.colour_index));
+        self.glosses.insert(slot, gloss);
+    }
+
+    /// Gloss of the paint in a slot once it is dry.
+    #[must_use]
+    pub fn gloss(&self, slot: usize) -> f32 {
+        let own = self.glosses.get(&slot).copied();
+        own.unwrap_or_else(|| dry_gloss(oil_share("")))
     }
 
     /// Content hash: appearances with equal hashes show the same paint alike, in every process.

@@ -11,6 +11,8 @@ use maulstick_optics::light::gloss::{merged_gloss, roughness};
 use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::paint::TILE;
 
+use crate::appearance::Appearance;
+
 /// Display of a tile before light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DisplayTile {
@@ -72,27 +74,30 @@ pub(crate) fn height(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>) -> Vec
     height
 }
 
-/// Gloss of the topmost paint of a tile, from its share of thinner and its wetness.
-fn gloss(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>, thinner: Option<usize>) -> Vec<f32> {
+/// Gloss of the topmost paint of a tile, from its pigments, its share of thinner and its wetness.
+fn gloss(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>, look: &Appearance) -> Vec<f32> {
     let mut gloss = vec![0.0; TILE_CELLS];
     let mut bare = TILE_CELLS;
     // From the top down: a cell has the gloss of its topmost paint.
     let mut lay = |planes: &[(usize, &[f32])], wetness: f32| {
+        let glosses: Vec<f32> = planes.iter().map(|(slot, _)| look.gloss(*slot)).collect();
         for cell in 0..TILE_CELLS {
             if gloss[cell] > 0.0 {
                 continue;
             }
-            let (mut all, mut thin) = (0.0, 0.0);
-            for (slot, plane) in planes {
-                all += plane[cell];
-                thin += if thinner == Some(*slot) {
-                    plane[cell]
+            let (mut paint, mut thin, mut sum) = (0.0, 0.0, 0.0);
+            for ((slot, plane), own) in planes.iter().zip(&glosses) {
+                if look.thinner == Some(*slot) {
+                    thin += plane[cell];
                 } else {
-                    0.0
-                };
+                    paint += plane[cell];
+                    sum += own * plane[cell];
+                }
             }
+            let all = paint + thin;
             if all > 0.0 {
-                gloss[cell] = maulstick_optics::light::gloss(thin / all, wetness);
+                let own = if paint > 0.0 { sum / paint } else { 0.0 };
+                gloss[cell] = maulstick_optics::light::gloss(own, thin / all, wetness);
                 bare -= 1;
             }
         }
@@ -121,7 +126,7 @@ impl DisplayTile {
     pub fn of(
         tile: Option<&Tile>,
         (films, rgb): (&WetFilms, [Vec<f32>; 3]),
-        thinner: Option<usize>,
+        look: &Appearance,
     ) -> Self {
         let dry = tile.and_then(Tile::dry).map(|stack| &**stack);
         let wetness = height(&films.0, None)
@@ -130,7 +135,7 @@ impl DisplayTile {
             .collect();
         Self {
             rgb,
-            gloss: gloss(&films.0, dry, thinner),
+            gloss: gloss(&films.0, dry, look),
             wetness,
             height: height(&films.0, dry),
         }
@@ -251,7 +256,8 @@ mod tests {
     fn shown(tile: Option<&Tile>, studio: &Studio, ground: &[f32]) -> DisplayTile {
         let films = WetFilms::of(tile);
         let rgb = films.shade(studio, Under::Even(ground));
-        DisplayTile::of(tile, (&films, rgb), None)
+        let look = Appearance::new(studio.clone());
+        DisplayTile::of(tile, (&films, rgb), &look)
     }
 
     fn tile() -> (Studio, Vec<f32>, DisplayTile) {

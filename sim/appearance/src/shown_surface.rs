@@ -90,7 +90,7 @@ impl ShownSurface {
     ) -> DisplayTile {
         let is_shaded = self.shown.colouring() == Colouring::Films;
         let own = (!is_shaded).then(|| WetFilms::of(tile));
-        let mut shown = DisplayTile::of(tile, (own.as_ref().unwrap_or(films), rgb), look.thinner);
+        let mut shown = DisplayTile::of(tile, (own.as_ref().unwrap_or(films), rgb), look);
         if is_shaded {
             self.uncover(id, look, &mut shown);
         }

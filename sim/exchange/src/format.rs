@@ -8,8 +8,8 @@ use maulstick_painting::Painting;
 
 use crate::surface::Progress;
 use crate::{
-    ExchangeError, SolidSetup, solid_step, write_glb, write_height_map, write_lit_png,
-    write_open_exr, write_open_raster, write_stl,
+    ExchangeError, SolidSetup, solid_step, write_glb, write_gloss_map, write_height_map,
+    write_lit_png, write_open_exr, write_open_raster, write_stl,
 };
 
 /// Formats of an export.
@@ -23,19 +23,22 @@ pub enum Format {
     Ora,
     /// Heights as a grey PNG of 16 bits.
     Height,
-    /// A solid with its colours: binary glTF.
+    /// Gloss as a grey PNG of 16 bits.
+    Gloss,
+    /// A solid: STL.
     Stl,
     /// The same with its colours: binary glTF.
     Glb,
 }
 
 impl Format {
-    /// All formats, with their names: a file's extension, except for heights.
-    pub const ALL: [(&'static str, Self); 6] = [
+    /// All formats, with their names: a file's extension, except for heights and gloss.
+    pub const ALL: [(&'static str, Self); 7] = [
         ("png", Self::Png),
         ("exr", Self::Exr),
         ("ora", Self::Ora),
         ("height", Self::Height),
+        ("gloss", Self::Gloss),
         ("stl", Self::Stl),
         ("glb", Self::Glb),
     ];
@@ -51,7 +54,7 @@ impl Format {
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?;
-        Self::named(ending).filter(|format| *format != Self::Height)
+        Self::named(ending).filter(|format| !matches!(format, Self::Height | Self::Gloss))
     }
 }
 
@@ -99,6 +102,7 @@ impl Order {
                     [range.least_m, range.greatest_m].map(|m| f64::from(m) * 1e6);
                 return Ok(format!("black is {least:.1} µm, white is {greatest:.1} µm"));
             }
+            Format::Gloss => write_gloss_map(painting, surface, to, progress)?,
             Format::Stl | Format::Glb => {
                 let cells = painting
                     .store(surface)
@@ -133,7 +137,7 @@ mod tests {
         assert_eq!(of("a.PNG"), Some(Format::Png));
         assert_eq!(of("/x.y/a.stl"), Some(Format::Stl));
         assert_eq!(of("a.glb"), Some(Format::Glb));
-        for name in ["a", "a.height", "a.jpg", ".png"] {
+        for name in ["a", "a.height", "a.gloss", "a.jpg", ".png"] {
             assert_eq!(of(name), None, "{name}");
         }
         assert_eq!(Format::named("Height"), Some(Format::Height));

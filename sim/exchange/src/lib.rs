@@ -10,6 +10,7 @@
 //! | [`write_lit_png`] | the painting under its lamp: PNG of 8 or 16 bits a channel |
 //! | [`write_open_exr`] | unlit colour, height and the thickness of each paint: OpenEXR |
 //! | [`write_open_raster`] | flat colour, a layer for each dry layer: OpenRaster |
+//! | [`write_gloss_map`] | gloss: grey PNG of 16 bits |
 //! | [`write_height_map`] | height: grey PNG of 16 bits; [`HeightRange`] says what black and white are |
 //! | [`write_stl`] | a solid to print, with overhangs: STL; [`solid_step`] proposes the resolution |
 //! | [`write_glb`] | the same with colours: binary glTF |
@@ -78,6 +79,7 @@ pub mod film;
 pub mod fit_to;
 mod format;
 mod glb;
+mod gloss_map;
 mod height_map;
 pub mod import_error;
 mod lit_png;
@@ -93,6 +95,7 @@ pub mod underpaint;
 pub use error::ExchangeError;
 pub use format::{Format, Order};
 pub use glb::write_glb;
+pub use gloss_map::write_gloss_map;
 pub use height_map::{HeightRange, write_height_map};
 pub use import_error::ImportError;
 pub use lit_png::write_lit_png;

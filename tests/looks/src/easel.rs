@@ -1,5 +1,6 @@
 //! A canvas, a brush and a hand for the measurements of looks, and the resulting films.
 
+use maulstick_appearance::Appearance;
 use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_num::atan2;
@@ -167,6 +168,11 @@ impl Easel {
         let scene = self.offline.painting_mut().scene();
         let slot = scene.paints.iter().position(|own| own.name == paint);
         slot.ok_or_else(|| UserError::failure(format!("no paint '{paint}' in the painting")))
+    }
+
+    /// The appearance of its paints.
+    pub fn look(&mut self) -> &Appearance {
+        self.offline.painting_mut().look()
     }
 
     /// Dries the whole canvas.

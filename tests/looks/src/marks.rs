@@ -2,6 +2,7 @@
 
 use maulstick_rig::UserError;
 
+use maulstick_optics::PaintLibrary;
 use maulstick_painting::edits::{Fill, FillPaint};
 use maulstick_types::values::FilmThickness;
 
@@ -43,7 +44,7 @@ impl Trial {
 }
 
 /// All of them.
-pub const ALL: [Measure; 8] = [
+pub const ALL: [Measure; 9] = [
     long_strokes,
     six_loads,
     dry_brush,
@@ -52,6 +53,7 @@ pub const ALL: [Measure; 8] = [
     separate_loads,
     through_wet,
     three_strokes,
+    masstones,
 ];
 
 const PAINT: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
@@ -338,6 +340,24 @@ pub fn separate_loads(trial: Trial) -> Result<Vec<Number>, UserError> {
         }
     }
     Ok(vec![("streaks.correlation", most, "")])
+}
+
+/// Gloss of each measured paint once it is dry; the faulty painter has one pigment.
+pub fn masstones(trial: Trial) -> Result<Vec<Number>, UserError> {
+    let mut easel = Easel::new([8.0, 8.0], trial.cell_mm, "linen", brush("flat", 4.0)?)?;
+    let library =
+        PaintLibrary::measured().map_err(|error| UserError::failure(error.to_string()))?;
+    let mut glosses = Vec::new();
+    for paint in library.paints() {
+        let name = trial.pick(paint.name.as_str(), "Titanium White");
+        easel.load(name)?;
+        let slot = easel.slot(name)?;
+        glosses.push(f64::from(easel.look().gloss(slot)));
+    }
+    let mean = glosses.iter().sum::<f64>() / glosses.len() as f64;
+    let off = glosses.iter().map(|gloss| (gloss - mean) * (gloss - mean));
+    let span = (off.sum::<f64>() / glosses.len() as f64).sqrt();
+    Ok(vec![("gloss_span", span, "")])
 }
 
 /// White through wet blue.

@@ -93,6 +93,11 @@ fn white_through_wet_blue_keeps_its_streaks() {
     holds(marks::through_wet, &[("through_wet.streaks", 0.03..=1.0)]);
 }
 
+#[test]
+fn paints_dry_to_glosses_of_their_own() {
+    holds(marks::masstones, &[("gloss_span", 0.02..=ANY)]);
+}
+
 /// The worst that a painter shows of each row in the first case that shows it, with its bound.
 fn read(own: &Readings, painter: Painter) -> Vec<(&'static str, f64, Bound)> {
     let case = CASES.iter().find(|case| (own.shows)(case)).expect("a case");

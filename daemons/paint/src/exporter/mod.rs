@@ -143,7 +143,7 @@ impl Drop for Running {
 #[must_use]
 pub fn kind_of(format: Format) -> Kind {
     match format {
-        Format::Png | Format::Height => Kind::Png,
+        Format::Png | Format::Height | Format::Gloss => Kind::Png,
         Format::Exr => Kind::Exr,
         Format::Ora => Kind::Ora,
         Format::Stl => Kind::Stl,
@@ -175,7 +175,7 @@ fn order(asked: &ExportOrder, usual: &Export) -> Result<Order, Refusal> {
         };
         Refusal::say(
             format!("nothing is exported as '{name}'"),
-            "end the name in .png, .exr, .ora, .stl or .glb, or say which format: png, exr, ora, height, stl, glb",
+            "end the name in .png, .exr, .ora, .stl or .glb, or say which format: png, exr, ora, height, gloss, stl, glb",
         )
     })?;
     let profile = match asked.profile.as_str() {

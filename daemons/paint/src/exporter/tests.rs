@@ -48,11 +48,12 @@ fn order(folder: &Path, name: &str) -> ExportOrder {
 #[test]
 fn every_format() {
     let folder = tempfile::tempdir().expect("a folder");
-    let heads: [(&str, &str, &[u8]); 5] = [
+    let heads: [(&str, &str, &[u8]); 6] = [
         ("a.png", "", b"\x89PNG"),
         ("a.exr", "", &[0x76, 0x2f, 0x31, 0x01]),
         ("a.ora", "", b"PK"),
         ("h.png", "height", b"\x89PNG"),
+        ("gloss.png", "gloss", b"\x89PNG"),
         ("a.stl", "", b"Maulstick"),
     ];
     for (name, format, head) in heads {

@@ -234,7 +234,7 @@ impl Pyramid {
         let bare = || {
             let films = WetFilms::default();
             let rgb = films.shade(&look.studio, Under::Even(surface.bare.ground.mean()));
-            Arc::new(DisplayTile::of(None, (&films, rgb), None))
+            Arc::new(DisplayTile::of(None, (&films, rgb), look))
         };
         Arc::clone(self.outside.entry(number).or_insert_with(bare))
     }

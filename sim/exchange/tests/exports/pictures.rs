@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use maulstick_exchange::{HeightRange, write_height_map};
+use maulstick_exchange::{HeightRange, write_gloss_map, write_height_map};
 use maulstick_models::model_names;
 use maulstick_painting::Painting;
 use maulstick_painting::picture::picture;
@@ -73,6 +73,22 @@ fn height_map(painting: &mut Painting) -> (HeightRange, png::Info<'static>, Vec<
     let range = write_height_map(painting, CANVAS, &mut to, &mut |_, _| {}).expect("written");
     let (info, bytes) = decoded(to.get_ref());
     (range, info, sixteen(&bytes))
+}
+
+/// Bare ground is matt, wet paint is glossy, and the text tells how gloss is roughness.
+#[test]
+fn a_gloss_map_holds_gloss() {
+    let mut painting = painted();
+    let mut to = Cursor::new(Vec::new());
+    write_gloss_map(&mut painting, CANVAS, &mut to, &mut |_, _| {}).expect("written");
+    let (info, bytes) = decoded(to.get_ref());
+    let values = sixteen(&bytes);
+    let size = picture(&mut painting, CANVAS);
+    assert_eq!(values.len(), size.width * size.height);
+    let bare = values.iter().filter(|value| **value == 0).count();
+    let wet = values.iter().filter(|value| **value >= 49_150).count();
+    assert!(bare > 0 && wet > 0, "{bare} {wet}");
+    assert_eq!(info.uncompressed_latin1_text[0].keyword, "Gloss");
 }
 
 #[test]

@@ -5,8 +5,8 @@ use std::io::Cursor;
 use maulstick_appearance::picture::{Depth, Export};
 use maulstick_brush::BrushFile;
 use maulstick_exchange::{
-    ExchangeError, SolidSetup, write_glb, write_height_map, write_lit_png, write_open_exr,
-    write_open_raster, write_stl,
+    ExchangeError, SolidSetup, write_glb, write_gloss_map, write_height_map, write_lit_png,
+    write_open_exr, write_open_raster, write_stl,
 };
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::edits::{Dry, Fill, FillPaint, Load};
@@ -167,7 +167,7 @@ pub(crate) trait File: std::io::Write + std::io::Seek {}
 impl<T: std::io::Write + std::io::Seek> File for T {}
 
 /// All exports.
-pub(crate) const EXPORTS: [(&str, Write); 7] = [
+pub(crate) const EXPORTS: [(&str, Write); 8] = [
     ("PNG, 8 bits", |painting, surface, to, tell| {
         write_lit_png(
             painting,
@@ -188,6 +188,9 @@ pub(crate) const EXPORTS: [(&str, Write); 7] = [
     }),
     ("height map", |painting, surface, to, tell| {
         write_height_map(painting, surface, to, tell).map(|_| ())
+    }),
+    ("gloss map", |painting, surface, to, tell| {
+        write_gloss_map(painting, surface, to, tell)
     }),
     ("OpenEXR", |painting, surface, to, tell| {
         write_open_exr(painting, surface, to, tell)

@@ -18,12 +18,18 @@
 /// Roughness α of the glossiest film, and of the most matte ground.
 pub const ROUGHNESS: [f32; 2] = [0.1, 0.7];
 
-/// Gloss g of oil paint: from .3 at `wetness` 0, an eggshell of dry paint, to .75 at 1, stiff paint from the tube,
-/// whose pigment roughens the surface; the share of thinner raises both to 1, a level film. Both arguments are 0 to 1.
+/// Gloss g of oil paint: from `dry` at `wetness` 0 to .75 at 1, stiff paint from the tube, whose pigment roughens the
+/// surface; the share of thinner raises both to 1, a level film. All arguments are 0 to 1.
 #[must_use]
-pub fn gloss(thinner_share: f32, wetness: f32) -> f32 {
-    let own = 0.3 + (0.75 - 0.3) * wetness.clamp(0.0, 1.0);
+pub fn gloss(dry: f32, thinner_share: f32, wetness: f32) -> f32 {
+    let own = dry + (0.75 - dry) * wetness.clamp(0.0, 1.0);
     own + (1.0 - own) * thinner_share.clamp(0.0, 1.0)
+}
+
+/// Gloss of dry paint with this share of oil: .3, an eggshell, at .6; lean paint is more matt.
+#[must_use]
+pub fn dry_gloss(oil_share: f64) -> f32 {
+    (0.3 + 0.8 * (oil_share - 0.6)).clamp(0.0, 1.0) as f32
 }
 
 /// Roughness α of a surface of this gloss, 0 to 1.
@@ -162,10 +168,13 @@ mod tests {
 
     #[test]
     fn paint_is_dull_when_it_is_dry_and_level_when_it_is_thin() {
-        assert_eq!([gloss(0.0, 1.0), gloss(0.0, 0.0)], [0.75, 0.3]);
-        assert_eq!([gloss(1.0, 1.0), gloss(1.0, 0.0)], [1.0, 1.0]);
-        assert!(gloss(0.5, 0.5) > gloss(0.2, 0.5) && gloss(0.2, 0.6) > gloss(0.2, 0.5));
-        assert_eq!(gloss(-1.0, 2.0), 0.75);
+        let of = |thinner, wetness| gloss(0.3, thinner, wetness);
+        assert_eq!([of(0.0, 1.0), of(0.0, 0.0)], [0.75, 0.3]);
+        assert_eq!([of(1.0, 1.0), of(1.0, 0.0)], [1.0, 1.0]);
+        assert!(of(0.5, 0.5) > of(0.2, 0.5) && of(0.2, 0.6) > of(0.2, 0.5));
+        assert_eq!(of(-1.0, 2.0), 0.75);
+        assert!(gloss(0.2, 0.0, 0.0) < of(0.0, 0.0) && gloss(0.2, 0.0, 1.0) == 0.75);
+        assert!([0.45, 0.6, 0.75].map(dry_gloss).is_sorted_by(|a, b| a < b));
         assert!(
             [0.0, 0.3, 0.75, 1.0]
                 .map(roughness)

@@ -4,6 +4,7 @@ pub mod comparison;
 pub mod km;
 pub mod matching;
 pub mod mixture;
+pub mod oil;
 pub mod paints;
 pub mod search;
 pub mod surface;

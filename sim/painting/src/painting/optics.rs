@@ -51,9 +51,7 @@ impl Optics {
         for (place, slot) in scene.paints.iter().enumerate() {
             let paint = library.find(&slot.name)?;
             look.studio.add(paint);
-            if paint.is_thinner() {
-                look.thinner = Some(place);
-            }
+            look.know(place, paint);
         }
         let mut optics = Self {
             library,
@@ -154,9 +152,7 @@ impl Optics {
         for paint in new {
             let look = Arc::make_mut(&mut self.look);
             let slot = paint_slot(&mut look.studio, paint, self.library.hash());
-            if paint.is_thinner() {
-                look.thinner = Some(scene.paints.len());
-            }
+            look.know(scene.paints.len(), paint);
             scene.paints.push(slot);
             scene.version += 1;
         }

@@ -32,7 +32,7 @@ pub struct ExportOptions {
     /// Stop the running export of the rig; its file is not written
     #[arg(long, conflicts_with_all = ["file", "output"])]
     stop: bool,
-    /// Format, if the file name does not tell; `height` is a PNG too
+    /// Format, if the file name does not tell; `height` and `gloss` are PNGs too
     #[arg(long, value_parser = formats())]
     format: Option<String>,
     /// Use the palette instead of the canvas
