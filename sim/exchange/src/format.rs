@@ -102,7 +102,10 @@ impl Order {
                     [range.least_m, range.greatest_m].map(|m| f64::from(m) * 1e6);
                 return Ok(format!("black is {least:.1} µm, white is {greatest:.1} µm"));
             }
-            Format::Gloss => write_gloss_map(painting, surface, to, progress)?,
+            Format::Gloss => {
+                write_gloss_map(painting, surface, to, progress)?;
+                return Ok("black is matt, white is a mirror".to_owned());
+            }
             Format::Stl | Format::Glb => {
                 let cells = painting
                     .store(surface)

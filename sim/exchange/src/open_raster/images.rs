@@ -108,7 +108,8 @@ pub(super) fn draw(drawing: &Drawing<'_>, images: &[Image], band: usize) -> Vec<
     let pixels = banded.rows(band).len() * banded.cells()[0];
     let blank = |image: &Image| vec![0; pixels * image.colour().samples()];
     let mut bands: Vec<Vec<u8>> = images.iter().map(blank).collect();
-    let mut opaque = drawing.blank(band, Depth::Eight);
+    // The pictures of the newest layer and of those under it.
+    let [mut opaque, mut below] = [(); 2].map(|()| drawing.blank(band, Depth::Eight));
     for (id, tile) in banded.tiles(band) {
         let stacks = stacks(tile);
         // From the ground up, so that each baked layer lies on the one before.
@@ -139,25 +140,32 @@ pub(super) fn draw(drawing: &Drawing<'_>, images: &[Image], band: usize) -> Vec<
                     continue;
                 }
             };
+            std::mem::swap(&mut opaque, &mut below);
             drawing.lay((id, &shown), None, Depth::Eight, &mut opaque);
-            cut(banded, id, any.as_deref(), (&opaque, band));
+            cut(banded, id, any.as_deref(), ([&opaque, &below], band));
         }
     }
     bands
 }
 
-/// Copies the pixels of a tile where there is any paint.
-fn cut(banded: &Banded<'_>, id: TileId, any: Option<&[bool]>, (opaque, band): (&[u8], &mut [u8])) {
+/// Copies the pixels of a tile where there is any paint, or where paint beside them changes them.
+fn cut(
+    banded: &Banded<'_>,
+    id: TileId,
+    any: Option<&[bool]>,
+    ([opaque, below], band): ([&[u8]; 2], &mut [u8]),
+) {
     let [across, rows] = banded.within(id);
     let (width, left) = (banded.cells()[0], id.x as usize * TILE);
     for y in 0..rows {
         for x in 0..across {
-            if any.is_some_and(|any| !any[y * TILE + x]) {
+            let pixel = (rows - 1 - y) * width + left + x;
+            let [own, other] = [opaque, below].map(|band| &band[pixel * RGB..][..RGB]);
+            if any.is_some_and(|any| !any[y * TILE + x]) && own == other {
                 continue;
             }
-            let pixel = (rows - 1 - y) * width + left + x;
             let to = &mut band[pixel * RGBA..][..RGBA];
-            to[..RGB].copy_from_slice(&opaque[pixel * RGB..][..RGB]);
+            to[..RGB].copy_from_slice(own);
             to[RGB] = u8::MAX;
         }
     }

@@ -88,7 +88,7 @@ fn drying_keeps_the_colour_and_the_height_whatever_the_share() {
         painting
             .apply(Opacity {
                 layer: LayerRef::Number { number: 1 },
-                opacity: OpacityFactor::new(0.5).expect("in range"),
+                opacity: OpacityFactor::new(0.1).expect("in range"),
             })
             .expect("a layer");
         let thinner = unlit_picture(&mut painting, CANVAS);

@@ -12,6 +12,8 @@ use crate::strokes;
 const COLOURS: [f64; 2] = [0.3, 2.0];
 /// Tolerance of the backends' difference of volume, as a share.
 const VOLUME: f64 = 1e-3;
+/// The same on fine cells, whose many small demands round more often.
+const VOLUME_FINE: f64 = 2.5e-3;
 
 fn finer(finer: u32, gpu: Option<Device>) -> Painting {
     let model = gpu.map(|gpu| -> Box<dyn PaintModel> {
@@ -25,8 +27,12 @@ fn easel(gpu: Option<Device>) -> Painting {
 }
 
 fn agree(cpu: &mut Painting, gpu: &mut Painting, before: u64) -> bool {
+    near(cpu, gpu, before, VOLUME)
+}
+
+fn near(cpu: &mut Painting, gpu: &mut Painting, before: u64, most: f64) -> bool {
     let (volume, colours) = apart(cpu, gpu, before);
-    volume <= VOLUME && colours[0] <= COLOURS[0] && colours[1] <= COLOURS[1]
+    volume <= most && colours[0] <= COLOURS[0] && colours[1] <= COLOURS[1]
 }
 
 #[test]
@@ -58,11 +64,12 @@ fn both_backends_paint_the_same_on_fine_cells() {
     for painting in [&mut cpu, &mut gpu] {
         paint(painting, "main", &stroke(1, 0.0, 48));
     }
-    assert!(agree(&mut cpu, &mut gpu, before));
+    assert!(near(&mut cpu, &mut gpu, before, VOLUME_FINE));
     assert_eq!(gpu.report().quanta_missing, 0);
     let mut beside = finer(3, None);
     paint(&mut beside, "main", &stroke(1, 0.05, 48));
-    assert!(!agree(&mut beside, &mut gpu, before), "a fault passes");
+    let passes = near(&mut beside, &mut gpu, before, VOLUME_FINE);
+    assert!(!passes, "a fault passes");
 }
 
 #[test]
