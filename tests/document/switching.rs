@@ -256,12 +256,13 @@ fn exports_of_a_running_rig_are_those_of_its_file() {
     place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);
     place.done(&["layer", "dry", "--layer", "first"]);
     place.done(&["canvas", "fill", "Bone Black", "--um", "5"]);
-    let formats: [(&str, &[&str]); 6] = [
+    let formats: [(&str, &[&str]); 7] = [
         ("x.png", &[]),
         ("deep.png", &["--bits", "16"]),
         ("x.exr", &[]),
         ("x.ora", &[]),
         ("height.png", &["--format", "height"]),
+        ("gloss.png", &["--format", "gloss"]),
         ("x.stl", &["--step", "2", "--base-mm", "3"]),
     ];
     for (name, more) in formats {

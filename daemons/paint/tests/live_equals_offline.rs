@@ -201,7 +201,7 @@ fn a_single_sample_less_would_be_seen() {
     let mut offline_painting =
         Offline::new(painting(), "main", file(), 0.5, loads()).expect("set up");
     for (i, (time_ns, sample)) in take().into_iter().enumerate() {
-        // With the first that touches missing, the second stroke begins later.
+        // Without its first touching sample the second stroke begins later.
         if i != 80 {
             offline_painting
                 .sample(START_NS + time_ns, &sample)

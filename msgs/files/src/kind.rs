@@ -9,7 +9,7 @@ use crate::open::read_head;
 /// A kind of file that commands write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Picture or height map, PNG.
+    /// Picture, height map or gloss map, PNG.
     Png,
     /// OpenEXR.
     Exr,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use maulstick_optics::light::gloss::dry_gloss;
-use maulstick_optics::oil::oil_share;
+use maulstick_optics::oil::{USUAL, oil_share};
 use maulstick_optics::{Paint, Studio};
 use maulstick_types::scene::Layer;
 
@@ -38,8 +38,8 @@ impl Appearance {
         }
     }
 
-    /// Adds the properties of the paint in a slot that its optics lack.
-    pub fn know(&mut self, slot: usize, paint: &Paint) {
+    /// Registers the paint in a slot: whether it is the thinner, and its gloss once dry.
+    pub fn register(&mut self, slot: usize, paint: &Paint) {
         if paint.is_thinner() {
             self.thinner = Some(slot);
         }
@@ -51,7 +51,7 @@ impl Appearance {
     #[must_use]
     pub fn gloss(&self, slot: usize) -> f32 {
         let own = self.glosses.get(&slot).copied();
-        own.unwrap_or_else(|| dry_gloss(oil_share("")))
+        own.unwrap_or_else(|| dry_gloss(USUAL))
     }
 
     /// Content hash: appearances with equal hashes show the same paint alike, in every process.

@@ -1,10 +1,11 @@
-//! Edges of paint below a cell.
+//! Edges of paint finer than a cell.
 //!
 //! A cell at the edge of paint has a part of the paint's thickness, for the paint covers a part of it (the volume
 //! fraction of an interface; Youngs 1982, "Time-dependent multi-material flow with large fluid distortion"). A thin film
 //! hides nearly as well as a thick one, so taken as an even film such a cell is all or nothing, and the edge a
 //! staircase. Here paint covers as much of the cell as there is of it beside its neighbours, and the ground shows in the
-//! rest: wet paint and dry layers alike, so that drying changes nothing.
+//! rest: wet paint and dry layers alike, so that drying changes nothing. The
+//! paint keeps the colour of the cell's mean thickness, so the edge of a transparent film is somewhat too pale.
 
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_types::paint::TILE;
@@ -12,8 +13,8 @@ use maulstick_types::paint::TILE;
 /// Thickness below which a cell counts as bare, m.
 const BARE_M: f32 = 0.5e-6;
 
-/// The share of each cell of a tile that paint of this height covers, m, 0 to 1; `None` where it has no edge. Neighbours
-/// beyond the tile are not asked.
+/// Share of each cell of a tile that its paint covers, 0 to 1, by the paint's height, m; `None` without an edge.
+/// Neighbours beyond the tile are not read.
 #[must_use]
 pub(crate) fn covers(paint: &[f32]) -> Option<Vec<f32>> {
     let is_bare = |height: &f32| *height < BARE_M;
@@ -34,7 +35,7 @@ pub(crate) fn covers(paint: &[f32]) -> Option<Vec<f32>> {
                     continue;
                 }
                 at_edge |= is_bare(&beside);
-                // The highest one may be a peak; two of them are the film.
+                // The highest neighbour may be a lone peak; the second highest is the film.
                 most = if beside > most[0] {
                     [beside, most[0]]
                 } else {

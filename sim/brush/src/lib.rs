@@ -82,7 +82,8 @@
 //! On coarse cells a head is thinned: its strips are halved in number while they stay no wider than two cells of the
 //! canvas at its zoom. Strips follow a sequence whose beginning is as even as the whole, so those left keep their
 //! places, lifts and capacities. Blades, whose strips are a line, are not thinned. Each load and each stroke disturbs
-//! tresses and tips, seeded by the number of the stroke since the take began, so a replay has the same streaks.
+//! tresses and tips, which also regroup along the stroke, seeded by the painting's number of strokes, so a replay has
+//! the same streaks.
 
 pub mod energy;
 pub mod file;

@@ -26,7 +26,8 @@ fn unpacked(folder: &Path) -> PathBuf {
     path
 }
 
-/// Decisions of its record, and true if the record paints on the tiles that it had: bristles stray in another way since.
+/// Decisions of its record, and true if its replay paints on the same tiles; the paint differs, because bristles are now
+/// disordered in another way.
 fn record(path: &Path) -> (Vec<Decision>, bool) {
     let settings = DocumentSettings::new(path, Access::Read);
     let (document, opened) = Document::open(&settings).expect("opened");
@@ -49,8 +50,8 @@ fn record(path: &Path) -> (Vec<Decision>, bool) {
         assert_eq!(sequencer.painting_mut().report().quanta_missing, 0);
         tiles(sequencer).into_keys().collect()
     };
-    let is_same = painted(&mut again) == painted(&mut opened.sequencer().expect("whole"));
-    (decisions, is_same)
+    let is_on_same_tiles = painted(&mut again) == painted(&mut opened.sequencer().expect("whole"));
+    (decisions, is_on_same_tiles)
 }
 
 fn steps(easel: &Easel) -> Vec<StepName> {
@@ -64,9 +65,9 @@ fn its_record_is_executed_again() {
     let path = unpacked(folder.path());
     let stats = DocumentStats::read(&path).expect("read");
     stats.check(&path, &mut |_, _| {}).expect("whole");
-    let (decisions, is_same) = record(&path);
+    let (decisions, is_on_same_tiles) = record(&path);
     assert_eq!(decisions, [const { Decision::Resumed }; 3]);
-    assert!(is_same);
+    assert!(is_on_same_tiles);
 }
 
 #[test]
@@ -97,9 +98,9 @@ fn its_steps_have_names_and_it_is_painted_on() {
 
     let stats = DocumentStats::read(&path).expect("read");
     assert_eq!(stats.format, VERSION);
-    let (decisions, is_same) = record(&path);
+    let (decisions, is_on_same_tiles) = record(&path);
     assert_eq!(decisions.len(), 4, "the record did not begin anew");
-    assert!(is_same);
+    assert!(is_on_same_tiles);
     let easel = Easel::open(&settings).expect("opened");
     assert_eq!(steps(&easel), named);
 }

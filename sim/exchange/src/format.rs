@@ -104,7 +104,7 @@ impl Order {
             }
             Format::Gloss => {
                 write_gloss_map(painting, surface, to, progress)?;
-                return Ok("black is matt, white is a mirror".to_owned());
+                return Ok("black is matt, white is the glossiest film".to_owned());
             }
             Format::Stl | Format::Glb => {
                 let cells = painting

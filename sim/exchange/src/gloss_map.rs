@@ -12,8 +12,8 @@ use maulstick_painting::Painting;
 use crate::ExchangeError;
 use crate::surface::{Progress, Steps, banded, check_whole};
 
-/// Writes the gloss of a surface, 0 to 1, as a grey PNG of 16 bits; its `tEXt` says how gloss is roughness to a renderer
-/// with GGX's facets. `pHYs` has the size of a cell.
+/// Writes the gloss of a surface, 0 to 1, as a grey PNG of 16 bits; its `tEXt` gives the formula for GGX's roughness α.
+/// `pHYs` has the size of a cell.
 ///
 /// # Errors
 /// [`ExchangeError`].

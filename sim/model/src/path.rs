@@ -86,11 +86,15 @@ impl PathStepper {
         }
     }
 
-    /// This path of a head whose bristles have regrouped.
+    /// This path with the poses of a head whose bristles have regrouped; its steps stay as long.
     #[must_use]
     pub fn regrouped(self, head: &Head) -> Self {
+        let doublings = self.doublings;
         let before = self.before.map(|(place, _)| place);
-        Self::going_on(head, (self.at, self.ahead, before), self.scale)
+        Self {
+            doublings,
+            ..Self::going_on(head, (self.at, self.ahead, before), self.scale)
+        }
     }
 
     /// Position of the last step, the position since, and that of the step before.

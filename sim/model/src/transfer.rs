@@ -85,9 +85,9 @@ impl Exchanging {
         fill + if difference > 0.0 { amount } else { -amount }
     }
 
-    /// Paint that is swapped along a travel where brush and canvas are wet, units: where their films touch, across
-    /// `gap`, a bristle and the paint under it shear a skin between them, whatever lies beyond it on either side; the
-    /// wider the gap, the less.
+    /// Paint swapped along a travel in reference cells, units: where the films touch across the gap, bristle and paint
+    /// shear a skin of at most [`SKIN`] between them, however deep either is; the wider the gap, the less. `on_brush`,
+    /// `lying` and `gap` are in units.
     #[must_use]
     #[inline(always)]
     pub fn swapped(&self, [on_brush, lying, gap]: [f32; 3], travel: f32) -> f32 {

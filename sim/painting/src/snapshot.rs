@@ -32,7 +32,7 @@ pub struct BrushSnapshot {
     pub strokes: usize,
     /// Seed of the disorder of its bristles.
     pub seed: u64,
-    /// Way of its newest stroke, and where on it its bristles have regrouped last, m.
+    /// Length of its newest stroke, and that at the last regrouping of its bristles, m.
     #[serde(default)]
     pub way_m: [f64; 2],
 }

@@ -53,7 +53,7 @@ pub const ALL: [Measure; 9] = [
     separate_loads,
     through_wet,
     three_strokes,
-    masstones,
+    glosses,
 ];
 
 const PAINT: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
@@ -342,22 +342,22 @@ pub fn separate_loads(trial: Trial) -> Result<Vec<Number>, UserError> {
     Ok(vec![("streaks.correlation", most, "")])
 }
 
-/// Gloss of each measured paint once it is dry; the faulty painter has one pigment.
-pub fn masstones(trial: Trial) -> Result<Vec<Number>, UserError> {
+/// Standard deviation of the dry gloss of the measured paints; the faulty painter has one pigment.
+pub fn glosses(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut easel = Easel::new([8.0, 8.0], trial.cell_mm, "linen", brush("flat", 4.0)?)?;
     let library =
         PaintLibrary::measured().map_err(|error| UserError::failure(error.to_string()))?;
-    let mut glosses = Vec::new();
+    let mut all = Vec::new();
     for paint in library.paints() {
         let name = trial.pick(paint.name.as_str(), "Titanium White");
         easel.load(name)?;
         let slot = easel.slot(name)?;
-        glosses.push(f64::from(easel.look().gloss(slot)));
+        all.push(f64::from(easel.look().gloss(slot)));
     }
-    let mean = glosses.iter().sum::<f64>() / glosses.len() as f64;
-    let off = glosses.iter().map(|gloss| (gloss - mean) * (gloss - mean));
-    let span = (off.sum::<f64>() / glosses.len() as f64).sqrt();
-    Ok(vec![("gloss_span", span, "")])
+    let mean = all.iter().sum::<f64>() / all.len() as f64;
+    let off = all.iter().map(|gloss| (gloss - mean) * (gloss - mean));
+    let deviation = (off.sum::<f64>() / all.len() as f64).sqrt();
+    Ok(vec![("gloss_span", deviation, "")])
 }
 
 /// White through wet blue.

@@ -95,7 +95,7 @@ fn white_through_wet_blue_keeps_its_streaks() {
 
 #[test]
 fn paints_dry_to_glosses_of_their_own() {
-    holds(marks::masstones, &[("gloss_span", 0.02..=ANY)]);
+    holds(marks::glosses, &[("gloss_span", 0.02..=ANY)]);
 }
 
 /// The worst that a painter shows of each row in the first case that shows it, with its bound.

@@ -20,7 +20,7 @@ struct Format {
     words: &'static str,
 }
 
-const FORMATS: [Format; 6] = [
+const FORMATS: [Format; 7] = [
     Format {
         name: "png",
         ending: "png",
@@ -40,6 +40,11 @@ const FORMATS: [Format; 6] = [
         name: "height",
         ending: "png",
         words: tr_noop!("Heights in grey (PNG)"),
+    },
+    Format {
+        name: "gloss",
+        ending: "png",
+        words: tr_noop!("Gloss in grey (PNG)"),
     },
     Format {
         name: "stl",

@@ -39,7 +39,7 @@ pub enum PaintingCommand {
     Edit(PaintingEdit),
     /// Show what a painting holds
     Info(info::InfoOptions),
-    /// Export a painting: PNG, OpenEXR, OpenRaster, height map, STL, glTF
+    /// Export a painting: PNG, OpenEXR, OpenRaster, height, gloss, STL, glTF
     Export(export::ExportOptions),
     /// Import a picture as underpainting, ground or tooth
     Import(import::ImportOptions),

@@ -25,8 +25,8 @@ const PLANES: [u64; 3] = [11, 12, 13];
 pub(super) struct Straying {
     /// True for a blade, whose strips never shift.
     pub(super) rigid: bool,
-    /// Share of the chance of a single bristle that a strip has, which stands for several.
-    singly: f32,
+    /// Share of a single bristle's variation that a strip keeps: one over the number of bristles it stands for.
+    single_share: f32,
     /// Greatest offset of a tress, by half the head's width and thickness there.
     stray: f32,
     /// Shortening of the shortest bristle, m.
@@ -40,7 +40,7 @@ impl Straying {
         let blunt = (file.radius_m(1.0) / file.radius_m(0.0)).min(1.0);
         Self {
             rigid: file.head.hair == Hair::Steel,
-            singly: (1.0 / file.strips.stands_for) as f32,
+            single_share: (1.0 / file.strips.stands_for) as f32,
             stray: STRAY[soft],
             ragged_m: (RAGGED[soft] * blunt * file.length_m()) as f32,
         }
@@ -48,10 +48,10 @@ impl Straying {
 }
 
 impl Head {
-    /// Share of the chance of a single bristle that one of its strips has, which stands for several.
+    /// Share of a single bristle's variation that a strip keeps, which stands for several.
     #[must_use]
-    pub fn singly(&self) -> f32 {
-        self.straying.singly
+    pub fn single_share(&self) -> f32 {
+        self.straying.single_share
     }
 
     /// This head with its bristles in the disorder of a seed, after a way of the stroke in m; seed 0 leaves them as in
@@ -61,7 +61,7 @@ impl Head {
         let mut head = self.clone();
         let Straying {
             rigid,
-            singly,
+            single_share,
             stray,
             ragged_m,
         } = self.straying;
@@ -69,9 +69,8 @@ impl Head {
             return head;
         }
         let turns = way_m / REGROUPS_M;
-        let (turn, t) = (turns.floor(), (turns - turns.floor()) as f32);
+        let (turn, part) = (turns.floor(), smoothstep(turns - turns.floor()) as f32);
         let seeds = [0, 1].map(|next| seed ^ ((turn as u64 + next) << 40));
-        let part = t * t * (3.0 - 2.0 * t);
         let regrouped = |of: &dyn Fn(u64) -> f32| {
             let [before, after] = seeds.map(of);
             before + (after - before) * part
@@ -82,7 +81,7 @@ impl Head {
                 PLANES.map(|plane| regrouped(&|seed| noise(seed ^ (plane << 32), place)));
             let single = regrouped(&|seed| unit(seed, [strip as i64, i64::MAX]));
             let rim = root[0].abs().max(root[1].abs()).powi(RIM_POWER);
-            let single = (0.5 + singly * (single - 0.5)) * (1.0 + RIM * rim);
+            let single = (0.5 + single_share * (single - 0.5)) * (1.0 + RIM * rim);
             let stray = [across, aside].map(|v| stray * (2.0 * v - 1.0));
             let shorter = ragged_m * 0.5 * (along + single);
             for station in 0..STATIONS {

@@ -58,9 +58,9 @@ const KINDS: [Kind; 4] = [
     },
 ];
 
-/// Distance of the samples of a cell, m: a coarse one has the mean of its tooth, as paint sees it.
+/// Side of a cell per sample of its tooth, m: a coarse cell has the mean of its tooth.
 const SAMPLED_M: f64 = 0.125e-3;
-/// Number of samples of a cell at most.
+/// Greatest number of samples of a cell.
 const SAMPLES_MOST: u32 = 16;
 
 /// The tooth of one surface.

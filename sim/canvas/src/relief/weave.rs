@@ -13,8 +13,9 @@ const UNEVEN: f64 = 0.26;
 const WANDER: f64 = 0.3;
 /// Sine and cosine of the angle of the threads against the cells: 4°.
 const TURNED: [f64; 2] = [0.069_756_474, 0.997_564_05];
-/// Drift of the threads, in thread spacings, and its waves, a thread spacing across and along.
+/// Range of the drift of the threads, in thread spacings.
 const DRIFT: f64 = 4.0;
+/// Waves of the drift per thread spacing, across and along.
 const DRIFT_WAVES: [f64; 2] = [0.05, 0.02];
 /// Extra width of a thread at its slub.
 const SLUB_WIDTH: f64 = 0.34;

@@ -75,7 +75,7 @@ fn height_map(painting: &mut Painting) -> (HeightRange, png::Info<'static>, Vec<
     (range, info, sixteen(&bytes))
 }
 
-/// Bare ground is matt, wet paint is glossy, and the text tells how gloss is roughness.
+/// Bare ground is matt, wet paint is glossy, and the text gives the roughness.
 #[test]
 fn a_gloss_map_holds_gloss() {
     let mut painting = painted();
@@ -88,7 +88,9 @@ fn a_gloss_map_holds_gloss() {
     let bare = values.iter().filter(|value| **value == 0).count();
     let wet = values.iter().filter(|value| **value >= 49_150).count();
     assert!(bare > 0 && wet > 0, "{bare} {wet}");
-    assert_eq!(info.uncompressed_latin1_text[0].keyword, "Gloss");
+    let text = &info.uncompressed_latin1_text[0];
+    assert_eq!(text.keyword, "Gloss");
+    assert!(text.text.ends_with("0.1 + 0.6 (1 - gloss)^2"), "{text:?}");
 }
 
 #[test]

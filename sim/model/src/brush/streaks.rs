@@ -24,7 +24,8 @@ pub fn streaks(head: &Head, seed: u64) -> Vec<f32> {
         let own = 1.0 + OWN * (capacity - 1.0);
         let patch = noise(seed, [root[0] / PATCH, 0.5 * root[1] / PATCH]);
         let single = unit(seed, [strip as i64, i64::MIN]);
-        let chance = PATCHES * (2.0 * patch - 1.0) + head.singly() * SINGLE * (2.0 * single - 1.0);
+        let chance =
+            PATCHES * (2.0 * patch - 1.0) + head.single_share() * SINGLE * (2.0 * single - 1.0);
         (own * (1.0 + chance)).clamp(SHARE_RANGE[0], SHARE_RANGE[1])
     });
     let mut taken: Vec<f32> = taken.collect();

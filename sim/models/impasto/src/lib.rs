@@ -4,7 +4,7 @@
 //! is one [`PaintModel`](maulstick_model::interface::PaintModel); [`stages`] holds its stages, a file each, and
 //! levelling at rest.
 //!
-//! The trace of a stroke is decided where bristles lift off: a film that bridges a gap splits three to seven, and
+//! The trace of a stroke is decided where bristles lift off: a film that bridges a gap splits, three tenths to the bristle, and
 //! levels as far as the yield stress of what the brush has left allows. Paint flows within the head in every step: strips
 //! that take turns would show along the stroke. `maulstick bench looks` measures ridges, streaks and films.
 //!
@@ -89,7 +89,7 @@
 //!   empty one catches on peaks, a light one on dry ridges. A brush with a limit (a glaze) leaves up to as much again
 //!   in hollows, and has no limit on a palette, where paints are mixed.
 //! - Colour travels by a skin that bristle and paint shear between them wherever their films touch, both ways, so also
-//!   where they are equal: the wider the gap, the less. A full white brush through blue stays blue for a hand's length.
+//!   where they are equal: the wider the gap, the less. The stroke of a white brush through wet blue stays bluish for a hand's length.
 //! - A badger exchanges more than it takes up, so it softens. A blade floats on its paint by its pressure, takes up
 //!   what stands above its edge and fills what lies below: it scrapes and deposits slabs.
 //! - The lowest strip of a cell depends on the cell size. To keep the trace of a brush independent of it, paint flows
@@ -98,7 +98,7 @@
 //!   starves bristle by bristle.
 //! - Levelling belongs to the stroke and lasts a second. Under moving bristles, a hundredth of a second a cell,
 //!   levelling is not measurable. Heights go through sixteen rounds before all paints follow by their sum; blocks
-//!   without flow rest; cells under 1 mm flow on coarser grids first. Paint that the brush has left yields at 50 Pa,
+//!   without flow rest; cells up to .5 mm flow on coarser grids first. Paint that the brush has left yields at 50 Pa,
 //!   which holds the ridges of bristles; thinner takes that away, and thinned paint wets bare ground.
 
 #[cfg(feature = "device")]

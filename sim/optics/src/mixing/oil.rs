@@ -4,6 +4,8 @@
 //! dries matt (critical pigment volume concentration). Pigments are grouped as Winsor & Newton group their oil colours:
 //! at most 50 %, 50 to 70 %, and 70 % or more.
 
+/// Share of oil of an ordinary paint, and of one with unknown pigments, by volume.
+pub const USUAL: f64 = 0.6;
 /// Colour indices of lean and of rich paints; all others lie between.
 const LEAN: [&str; 3] = ["PB29", "PB33", "PW1"];
 const RICH: [&str; 11] = [
@@ -23,12 +25,12 @@ pub fn oil_share(colour_index: &str) -> f64 {
             } else if RICH.contains(&own) {
                 0.75
             } else {
-                0.6
+                USUAL
             }
         })
         .collect();
     if shares.is_empty() {
-        return 0.6;
+        return USUAL;
     }
     shares.iter().sum::<f64>() / shares.len() as f64
 }

@@ -51,7 +51,7 @@ impl Optics {
         for (place, slot) in scene.paints.iter().enumerate() {
             let paint = library.find(&slot.name)?;
             look.studio.add(paint);
-            look.know(place, paint);
+            look.register(place, paint);
         }
         let mut optics = Self {
             library,
@@ -152,7 +152,7 @@ impl Optics {
         for paint in new {
             let look = Arc::make_mut(&mut self.look);
             let slot = paint_slot(&mut look.studio, paint, self.library.hash());
-            look.know(scene.paints.len(), paint);
+            look.register(scene.paints.len(), paint);
             scene.paints.push(slot);
             scene.version += 1;
         }

@@ -35,7 +35,8 @@ pub const ADVANCES: f32 = 1.0;
 
 /// Largest part of a cell's paint that flows through a face at once.
 const LARGEST_SHARE: f32 = 0.25;
-/// Largest cells of a coarser grid, m: thinned paint drains from ridges a brush's mark apart within the second.
+/// Largest cells of a coarser grid, m: so large that thinned paint drains within the second from ridges as far apart as a
+/// brush's marks.
 const COARSEST_M: f64 = 1e-3;
 
 /// Rheology of a paint.
@@ -322,23 +323,23 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Stress of a wave by that of its differences: the fall of curvature and of height between two cells tells its
-/// length.
+/// Factor from the stress of finite differences to that of the wave itself. `bends` and `drop` are the falls of the
+/// surface's Laplacian and of its height between two cells, in cells; their ratio gives the wavelength.
 ///
 /// Over a wave that advances by θ a cell, differences have the factor (sin ½θ/½θ)³ of the third derivative; the square
 /// of 2 sin ½θ is the fall of curvature by that of height, and this is (½θ/sin ½θ)³ within 1 % for waves of three cells
 /// and more, within 14 % for shorter ones.
 #[inline(always)]
 #[must_use]
-pub fn exact(bends: f32, drop: f32) -> f32 {
+fn stress_factor(bends: f32, drop: f32) -> f32 {
     let short = bends * drop / larger(drop * drop, 1e-12);
     let short = larger(smaller(short, 4.0), 0.0);
     let cube = short * short * short;
-    1.0 + short * (0.125 + short * EXACT[0]) + EXACT[1] * cube * cube * cube
+    1.0 + short * (0.125 + short * STRESS_FACTOR[0]) + STRESS_FACTOR[1] * cube * cube * cube
 }
 
-/// Coefficients that make [`exact`] so at waves of four and of three cells.
-const EXACT: [f32; 2] = [0.0295, 6.48e-6];
+/// Coefficients that make [`stress_factor`] exact at waves of four and of three cells.
+const STRESS_FACTOR: [f32; 2] = [0.0295, 6.48e-6];
 
 /// The flow from a cell to its neighbour, as a share of the donor's available paint, and that paint.
 #[inline(always)]
@@ -349,7 +350,7 @@ fn flow(round: &Round, bare: f32, own: &Run<'_>, next: &Run<'_>, i: usize) -> [f
     let gradient = round.tension * (next.curve[i] - own.curve[i]) + round.weight * drop;
     let height = 0.5 * (wet + wet_next);
     let yields = 0.5 * (own.yields[i] + next.yields[i]);
-    let stress = gradient.abs() * exact(next.curve[i] - own.curve[i], drop);
+    let stress = gradient.abs() * stress_factor(next.curve[i] - own.curve[i], drop);
     let sheared = larger(height - yields / larger(stress, 1e-12), 0.0);
     let mobility = round.mobility * 0.5 * (own.fluid[i] + next.fluid[i]);
     let mobility = mobility * sheared * sheared * (3.0 * height - sheared) / 6.0;

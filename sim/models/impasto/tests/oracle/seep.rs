@@ -90,7 +90,7 @@ fn spread(load: &BrushLoad) -> f64 {
 
 #[test]
 fn the_fuller_film_gives_and_none_is_lost() {
-    // Where all films cling, nothing flows along strips.
+    // Scenes that tell each fault apart; not all can, as films that cling do not flow along strips.
     let mut told = [0; 4];
     for seed in 0..16 {
         let mut scene = Scene::new(seed);

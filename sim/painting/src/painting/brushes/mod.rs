@@ -22,7 +22,7 @@ use super::backend::deferral::Deferral;
 use crate::brush_colour::Carried;
 use crate::error::BrushError;
 
-/// Way of a stroke from one regrouping of its bristles to the next, cells: they move by less than a cell in it.
+/// Distance along a stroke between regroupings of its bristles, cells: none moves by a cell in it.
 const REGROUP_CELLS: f64 = 5.0;
 /// Bits of a seed.
 const SEEDS: u64 = 0x7fff_ffff;
@@ -57,7 +57,7 @@ pub(crate) struct PaintingBrush {
     pub(crate) strokes: usize,
     /// Seed of the disorder of its bristles.
     pub(crate) seed: u64,
-    /// Way of its newest stroke, and where on it its bristles have regrouped last, m.
+    /// Length of its newest stroke, and that at the last regrouping of its bristles, m.
     pub(crate) way_m: [f64; 2],
     /// Surface under it at its newest step.
     pub(crate) under: UnderBrush,
@@ -129,7 +129,8 @@ impl PaintingBrush {
         Arc::make_mut(&mut self.load).disorder(self.seed);
     }
 
-    /// Regroups its bristles if it has gone on far enough since they did last, on cells of `cell_m`; true if it has.
+    /// Regroups its bristles if it has moved far enough since they last did, on cells of `cell_m` in its own metres;
+    /// true if they did.
     pub(crate) fn regroup(&mut self, cell_m: f64) -> bool {
         let [way, last] = &mut self.way_m;
         if *way - *last < REGROUP_CELLS * cell_m {

@@ -79,7 +79,7 @@ struct Step {
     ln_kept: f32,
     evens: f32,
     most_over: f32,
-    // Share of films that is exchanged.
+    // Share of a skin that changes places along a reference cell without a gap.
     swap: f32,
     // Greatest film of a texel, quanta.
     film_most: f32,
@@ -88,8 +88,9 @@ struct Step {
     seep_along: f32,
     // Quanta of a texel's film that cling to a strip.
     clings: f32,
-    // Number of parts in which paint moves, which the host dispatches; padding, so that records lie 256 bytes apart.
+    // Number of parts in which paint moves, which the host dispatches.
     parts: u32,
+    // Padding: records lie 256 bytes apart.
     room: vec2<u32>,
 }
 

@@ -1,4 +1,4 @@
-// After the last blend, returns the cells' quanta to the texels; then refills the surfaces of the strips of this step
+// After the last blend, returns the cells' quanta to the texels; then refills the surfaces of the strips that touch
 // from their reservoirs, in whole deep units, and paint runs down them (reservoir.rs in maulstick-dab). Counts the
 // step's contacts. A workgroup has a strip; an invocation one of its texels, and some of each texel's paints.
 

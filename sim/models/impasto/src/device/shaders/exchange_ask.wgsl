@@ -1,6 +1,6 @@
 // Requests of each cell to its texel, and offers to it (Baxter 2004, Algorithm 3, by path length), summed by texel.
 
-// Constants of transfer.rs in maulstick-impasto.
+// Constants of transfer.rs in maulstick-model.
 override SKIN: f32;
 override NEAR: f32;
 override POOL: f32;

@@ -3,10 +3,10 @@
 
 // The first pass goes between neighbouring strips, the second one along each strip.
 override second: u32 = 0u;
-// Difference between the films of two strips that remains, as a share of a full film (model.rs).
+// Difference between the films of two strips that remains, as a share of a full film (traits.rs in maulstick-model).
 override HOLDS: f32;
 
-// Up to `clings` a film stays where it is.
+// The part of a film up to `clings` does not flow.
 fn even_out(a: u32, b: u32, part: f32, holds: f32, clings: f32) {
     let films = vec2(load[1u + a], load[1u + b]);
     if films.x == films.y {

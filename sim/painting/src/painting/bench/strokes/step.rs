@@ -20,7 +20,7 @@ impl Stroke<'_> {
     pub(super) fn step(&mut self, sweep: Sweep<'_>, doublings: u32) {
         self.bench.accounts.work.steps += 1;
         let traits = self.traits().doubled(doublings);
-        let cell_m = self.scale.cell_m;
+        let cell_m = self.scale.cell_m * self.scale.zoom;
         self.brush_mut().way_m[0] += f64::from(traits.step_cells) * cell_m;
         let timing = self.timing();
         let height = self.paint_height(&traits, timing);

@@ -33,7 +33,7 @@ struct Blend {
     up_high: u32,
     up_low: u32,
     across: f32,
-    // `Refill` of reservoir.rs; 0 or 1 selects the strips of this step, NONE selects none. Thresholds of the first
+    // `Refill` of reservoir.rs; `refills` is 0 for a sponge, whose strips do not refill. Thresholds of the first
     // texel.
     deep: f32,
     full_surface: f32,
