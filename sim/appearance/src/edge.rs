@@ -4,8 +4,8 @@
 //! fraction of an interface; Youngs 1982, "Time-dependent multi-material flow with large fluid distortion"). A thin film
 //! hides nearly as well as a thick one, so taken as an even film such a cell is all or nothing, and the edge a
 //! staircase. Here paint covers as much of the cell as there is of it beside its neighbours, and the ground shows in the
-//! rest: wet paint and dry layers alike, so that drying changes nothing. The
-//! paint keeps the colour of the cell's mean thickness, so the edge of a transparent film is somewhat too pale.
+//! rest: wet paint and dry layers alike, so that drying changes nothing. The paint keeps the colour of the cell's mean
+//! thickness, so the edge of a transparent film is somewhat too pale. An edge over other paint stays all or nothing.
 
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_types::paint::TILE;

@@ -3,10 +3,10 @@
 use std::io::Write;
 
 use maulstick_appearance::bands::{Banded, in_order};
-use maulstick_appearance::picture::{Depth, Pixels, density, write_png};
 use maulstick_painting::Painting;
 
 use crate::ExchangeError;
+use crate::grey_map::write_grey_map;
 use crate::surface::{Progress, Steps, banded, check_whole};
 
 /// Range of the heights of a surface, m above the highest peaks of its bare ground.
@@ -62,33 +62,15 @@ pub fn write_height_map(
     progress: Progress<'_>,
 ) -> Result<HeightRange, ExchangeError> {
     let banded = banded(painting, surface)?;
-    let width = banded.cells()[0];
     let mut steps = Steps::new(progress, 2 * banded.bands());
     let range = HeightRange::of(&banded, &mut steps)?;
-    let pixels = Pixels {
-        size: banded.cells(),
-        colour: png::ColorType::Grayscale,
-        depth: Depth::Sixteen,
-        icc: None,
-        pixels_per_m: Some(density(banded.cell_m())),
-    };
-    let mut info = pixels.info();
     let [least, greatest] = [range.least_m, range.greatest_m].map(|m| f64::from(m) * 1e6);
     let text = format!("0 is {least:.4} micrometres, 65535 is {greatest:.4}");
-    info.uncompressed_latin1_text = vec![png::text_metadata::TEXtChunk::new("Height", text)];
-    let job = |band: usize| {
+    let values = |band: usize| {
         let heights = banded.heights(band);
-        let rows = heights.chunks_exact(width).rev();
-        let values = rows.flatten().map(|height| range.level(*height));
-        values.flat_map(u16::to_be_bytes).collect::<Vec<u8>>()
+        heights.iter().map(|height| range.level(*height)).collect()
     };
-    write_png::<ExchangeError>(to, info, |file| {
-        in_order(banded.bands(), job, |_, rows| {
-            file.write_all(&rows)?;
-            steps.step();
-            Ok(())
-        })
-    })?;
+    write_grey_map(&banded, ("Height", text), values, to, &mut steps)?;
     check_whole(painting)?;
     Ok(range)
 }

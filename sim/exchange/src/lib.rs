@@ -80,6 +80,7 @@ pub mod fit_to;
 mod format;
 mod glb;
 mod gloss_map;
+mod grey_map;
 mod height_map;
 pub mod import_error;
 mod lit_png;

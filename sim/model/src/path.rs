@@ -89,10 +89,9 @@ impl PathStepper {
     /// This path with the poses of a head whose bristles have regrouped; its steps stay as long.
     #[must_use]
     pub fn regrouped(self, head: &Head) -> Self {
-        let doublings = self.doublings;
         let before = self.before.map(|(place, _)| place);
         Self {
-            doublings,
+            doublings: self.doublings,
             ..Self::going_on(head, (self.at, self.ahead, before), self.scale)
         }
     }

@@ -12,6 +12,7 @@ use maulstick_types::paint::TILE;
 use super::drawing::flat;
 use super::*;
 use crate::appearance::Appearance;
+use crate::bakery::Bakery;
 use crate::bands::Banded;
 use crate::blank_surface::BlankSurface;
 use crate::show_paint::Counted;
@@ -185,4 +186,28 @@ fn shadows_and_occlusion_go_on_over_the_borders_of_tiles() {
         hidden += u32::from(pixel[1] < 200);
     }
     assert!(dark > 50 && hidden > 50, "{dark} {hidden}");
+}
+
+/// A cell of which paint covers a quarter shows the ground in the rest.
+#[test]
+fn the_ground_shows_beside_paint_at_its_edge() {
+    let studio = studio();
+    let (bare, look) = (bare(&studio), Appearance::new(studio));
+    let quanta = |um: f64| (um * 1e-6 / QUANTUM_M) as f32;
+    let red = |of: &dyn Fn(usize) -> f64, x: usize| {
+        let store = store(|x, _| quanta(of(x)));
+        let banded = Banded::new(&store, &bare, &look, CELL_M);
+        let (id, tile) = banded.tiles(0).next().expect("a tile");
+        banded.shown(id, tile, &mut Bakery::default()).rgb[0][x]
+    };
+    let edge = |x: usize| match x {
+        0..20 => 300.0,
+        20 => 75.0,
+        _ => 0.0,
+    };
+    let (paint, ground) = (red(&|_| 75.0, 20), red(&|_| 0.0, 20));
+    let off = |want: f32| (red(&edge, 20) - want).abs();
+    assert!(off(0.25 * paint + 0.75 * ground) < 1e-5);
+    assert!(off(paint) > 0.2, "an even film passes");
+    assert_eq!(red(&edge, 21), ground);
 }

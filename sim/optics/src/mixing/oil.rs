@@ -1,18 +1,20 @@
 //! Share of oil in a paint from the tube, by its pigment.
 //!
 //! A pigment that takes up much oil makes a rich paint, which dries glossy; a lean one, whose pigment stands close,
-//! dries matt (critical pigment volume concentration). Pigments are grouped as Winsor & Newton group their oil colours:
-//! at most 50 %, 50 to 70 %, and 70 % or more.
+//! dries matt. Winsor & Newton group oil colours by their oil: at most 50 % (ultramarine, manganese blue, flake white),
+//! 50 to 70 % (cadmiums, chromium oxide, ivory black), 70 % or more (siennas, burnt umber, phthalo blue and green,
+//! alizarin, rose, cobalt), as artcenterinformation.com lists them (2012). Other pigments count as of the middle group.
 
-/// Share of oil of an ordinary paint, and of one with unknown pigments, by volume.
+/// Share of oil in a paint of the middle group, and in one with unknown pigments.
 pub const USUAL: f64 = 0.6;
-/// Colour indices of lean and of rich paints; all others lie between.
+/// Shares of oil in a lean and in a rich paint, within their groups.
+const LEAN_SHARE: f64 = 0.45;
+const RICH_SHARE: f64 = 0.75;
+/// Colour indices of lean and of rich paints.
 const LEAN: [&str; 3] = ["PB29", "PB33", "PW1"];
-const RICH: [&str; 11] = [
-    "PBr7", "PB15", "PG7", "PG36", "PR83", "PV19", "PR122", "PB28", "PB36", "PV23", "PY129",
-];
+const RICH: [&str; 7] = ["PBr7", "PB15", "PG7", "PG36", "PR83", "PV19", "PB28"];
 
-/// Share of oil in the paint with this colour index, by volume; several pigments have their mean.
+/// Share of oil in the paint with this colour index; several pigments have their mean.
 #[must_use]
 pub fn oil_share(colour_index: &str) -> f64 {
     let pigments = colour_index.split([',', '+', '/', ' ']);
@@ -21,9 +23,9 @@ pub fn oil_share(colour_index: &str) -> f64 {
         .map(|pigment| {
             let own = pigment.split(':').next().unwrap_or_default();
             if LEAN.contains(&own) {
-                0.45
+                LEAN_SHARE
             } else if RICH.contains(&own) {
-                0.75
+                RICH_SHARE
             } else {
                 USUAL
             }

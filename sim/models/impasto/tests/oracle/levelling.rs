@@ -174,6 +174,16 @@ fn agrees(faces: &Faces, want: &[Vec<[f64; 2]>; 2]) -> bool {
     near(&faces.right, &want[0]) && near(&faces.above, &want[1])
 }
 
+/// The flow of which the oracle is surest, of those through a face that are not small.
+fn best_known<'a>(faces: &'a mut Faces, want: &[Vec<[f64; 2]>; 2]) -> &'a mut f32 {
+    let flows = faces.right.iter_mut().chain(&mut faces.above);
+    let known = flows.zip(want.iter().flatten());
+    let off = |v: f32, [low, high]: &[f64; 2]| (high - low) / f64::from(v.abs());
+    let large = known.filter(|(v, _)| v.abs() > 1e-4);
+    let surest = large.min_by(|(v, a), (w, b)| off(**v, a).total_cmp(&off(**w, b)));
+    surest.expect("a flow").0
+}
+
 /// Result of levelling on an area alone.
 fn levelled(film: &Film<'_>, area: &Area) -> (Faces, f32) {
     let to_cells = film.to_cells as f32;
@@ -203,7 +213,7 @@ fn area(random: &mut Random, limit: [usize; 2]) -> Area {
 
 #[test]
 fn paint_levels_as_a_bingham_fluid() {
-    let mut seen = [0; 4];
+    let (mut seen, mut told) = ([0; 4], [0; 2]);
     for seed in 0..24 {
         let mut random = Random::new(seed);
         let scene = Scene::new(seed);
@@ -239,15 +249,16 @@ fn paint_levels_as_a_bingham_fluid() {
         if most < 1e-3 {
             continue;
         }
-        // Paint a third more fluid differs where it flows, whatever its yield stress holds.
-        let place = all().position(|v| v.abs() == largest).expect("the most");
-        let planes = [&mut faces.right, &mut faces.above];
-        let count = planes[0].len();
-        let fault = &mut planes[place / count][place % count];
-        *fault *= 1.33;
-        assert!(!agrees(&faces, &want), "a fault in scene {seed} passes");
+        // Where the yield stress decides least of it, a flow a fiftieth larger differs.
+        *best_known(&mut faces, &want) *= 1.02;
+        told[usize::from(agrees(&faces, &want))] += 1;
     }
     assert!(seen.iter().all(|seen| *seen > 100), "{seen:?}");
+    let [found, passes] = told;
+    assert!(
+        found > 4 * passes,
+        "a fault passes: {found} found, {passes} not"
+    );
 }
 
 /// Seeded faults in the parameters of the flow.
