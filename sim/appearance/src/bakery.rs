@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use maulstick_canvas::dry::{DryLayer, DryStack};
 use maulstick_canvas::planes::TILE_CELLS;
+use maulstick_canvas::sheet::sheets;
 use maulstick_canvas::tile::TileId;
 use maulstick_optics::backend::FilmBackend;
 use maulstick_optics::{FilmPlanes, Under};
 
 use crate::appearance::Appearance;
-use crate::show_paint::ShowPaint;
+use crate::show_paint::{Films, ShowPaint};
 
 /// Limit on baked tiles, bytes; one with sixteen wavelengths takes 256 KiB.
 const KEPT_BYTES: usize = 128 << 20;
@@ -23,22 +24,27 @@ fn bake(
     tiles: &[Unbaked<'_>],
     backend: &mut dyn FilmBackend,
 ) -> Vec<Vec<f32>> {
-    let (links, mut baked): (Vec<Vec<&DryStack>>, Vec<Option<Vec<f32>>>) =
+    let (layers, mut baked): (Vec<Vec<&DryLayer>>, Vec<Option<Vec<f32>>>) =
         tiles.iter().map(Unbaked::bottom_up).unzip();
-    let deepest = links.iter().map(Vec::len).max().unwrap_or(0);
+    let films: Vec<Vec<(u32, Films)>> = layers
+        .iter()
+        .map(|layers| {
+            layers
+                .iter()
+                .flat_map(|layer| films_of(layer, shown))
+                .collect()
+        })
+        .collect();
+    let deepest = films.iter().map(Vec::len).max().unwrap_or(0);
     for depth in 0..deepest {
-        let at: Vec<(usize, &DryLayer)> = links
+        let at: Vec<(usize, &(u32, Films))> = films
             .iter()
             .enumerate()
-            .filter_map(|(tile, links)| Some((tile, links.get(depth)?.layer())))
+            .filter_map(|(tile, films)| Some((tile, films.get(depth)?)))
             .collect();
-        let films: Vec<Vec<(usize, Vec<f32>)>> = at
+        let paints: Vec<Vec<(usize, &[f32])>> = at
             .iter()
-            .map(|(_, layer)| shown.films(&layer.planes.get()))
-            .collect();
-        let paints: Vec<Vec<(usize, &[f32])>> = films
-            .iter()
-            .map(|films| {
+            .map(|(_, (_, films))| {
                 let slots = films.iter();
                 slots.map(|(slot, film)| (*slot, film.as_slice())).collect()
             })
@@ -46,9 +52,9 @@ fn bake(
         let batch: Vec<FilmPlanes<'_>> = at
             .iter()
             .zip(&paints)
-            .map(|((tile, layer), paints)| FilmPlanes {
+            .map(|((tile, (layer, _)), paints)| FilmPlanes {
                 paints,
-                opacity: look.opacity(layer.number),
+                opacity: look.opacity(*layer),
                 under: match &baked[*tile] {
                     Some(planes) => Under::Planes(planes),
                     None => tiles[*tile].ground,
@@ -72,6 +78,17 @@ fn bake(
     baked.into_iter().map(Option::unwrap_or_default).collect()
 }
 
+/// The films of a layer from the lowest up, each with the layer's number: one, or body and upper sheet.
+fn films_of(layer: &DryLayer, shown: &dyn ShowPaint) -> impl Iterator<Item = (u32, Films)> {
+    let planes = layer.planes.get();
+    let films = match sheets(&planes) {
+        Some(sheets) => sheets.into(),
+        None => vec![shown.films(&planes)],
+    };
+    let number = layer.number;
+    films.into_iter().map(move |films| (number, films))
+}
+
 /// A stack over a ground, to be baked.
 struct Unbaked<'a> {
     stack: &'a DryStack,
@@ -82,7 +99,7 @@ struct Unbaked<'a> {
 
 impl Unbaked<'_> {
     /// Its unbaked layers from the lowest up, and the baked part below.
-    fn bottom_up(&self) -> (Vec<&DryStack>, Option<Vec<f32>>) {
+    fn bottom_up(&self) -> (Vec<&DryLayer>, Option<Vec<f32>>) {
         let mut links = Vec::new();
         let (mut next, mut start) = (Some(self.stack), None);
         while let Some(link) = next {
@@ -92,7 +109,7 @@ impl Unbaked<'_> {
                 start = Some(baked.to_vec());
                 break;
             }
-            links.push(link);
+            links.push(link.layer());
             next = link.below().map(|below| &**below);
         }
         links.reverse();

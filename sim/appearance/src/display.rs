@@ -12,6 +12,7 @@ use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::paint::TILE;
 
 use crate::appearance::Appearance;
+use crate::show_paint::Films;
 
 /// Display of a tile before light.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,14 +29,31 @@ pub struct DisplayTile {
 
 /// Thickness of each wet paint of a tile, m, by slot.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct WetFilms(pub(crate) Vec<(usize, Vec<f32>)>);
+pub struct WetFilms {
+    /// All paint.
+    pub(crate) all: Films,
+    /// Body and upper sheet, where there are two.
+    pub(crate) sheets: Option<[Films; 2]>,
+}
+
+/// Films for the optics.
+fn borrowed(films: &Films) -> Vec<(usize, &[f32])> {
+    let films = films.iter();
+    films.map(|(slot, film)| (*slot, film.as_slice())).collect()
+}
 
 impl WetFilms {
-    /// The planes by slot, for the optics.
+    /// The uppermost film for the optics, by slot: the upper sheet, or all paint.
     #[must_use]
     pub fn planes(&self) -> Vec<(usize, &[f32])> {
-        let films = self.0.iter();
-        films.map(|(slot, film)| (*slot, film.as_slice())).collect()
+        let uppermost = self.sheets.as_ref().map(|[_, upper]| upper);
+        borrowed(uppermost.unwrap_or(&self.all))
+    }
+
+    /// The film under it for the optics; `None` where all paint is one sheet.
+    #[must_use]
+    pub fn body(&self) -> Option<Vec<(usize, &[f32])>> {
+        self.sheets.as_ref().map(|[body, _]| borrowed(body))
     }
 
     /// Colours of the films over their ground: linear red, green, blue.
@@ -45,10 +63,18 @@ impl WetFilms {
         rgb.iter_mut()
             .for_each(|plane| plane.resize(TILE_CELLS, 0.0));
         let [red, green, blue] = &mut rgb;
+        let baked = self.body().map(|body| {
+            let body = FilmPlanes {
+                paints: &body,
+                opacity: 1.0,
+                under,
+            };
+            studio.bake(&body, TILE_CELLS)
+        });
         let planes = FilmPlanes {
             paints: &self.planes(),
             opacity: 1.0,
-            under,
+            under: baked.as_deref().map_or(under, Under::Planes),
         };
         studio.shade(&planes, [red, green, blue]);
         rgb
@@ -129,15 +155,15 @@ impl DisplayTile {
         look: &Appearance,
     ) -> Self {
         let dry = tile.and_then(Tile::dry).map(|stack| &**stack);
-        let wetness = height(&films.0, None)
+        let wetness = height(&films.all, None)
             .iter()
             .map(|thickness| f32::from(u8::from(*thickness > 0.0)))
             .collect();
         Self {
             rgb,
-            gloss: gloss(&films.0, dry, look),
+            gloss: gloss(&films.all, dry, look),
             wetness,
-            height: height(&films.0, dry),
+            height: height(&films.all, dry),
         }
     }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use maulstick_canvas::dry::DryStack;
 use maulstick_canvas::planes::TILE_CELLS;
+use maulstick_canvas::sheet::sheets;
 use maulstick_canvas::tile::{Tile, TileId};
 
 use crate::appearance::Appearance;
@@ -36,7 +37,13 @@ impl ShownSurface {
     #[must_use]
     pub fn films(&self, tile: Option<&Tile>) -> WetFilms {
         let tile = tile.filter(|_| self.shown.colouring() == Colouring::Films);
-        let films = tile.map(|tile| WetFilms(self.shown.films(&tile.wet())));
+        let films = tile.map(|tile| {
+            let wet = tile.wet();
+            WetFilms {
+                all: self.shown.films(&wet),
+                sheets: sheets(&wet),
+            }
+        });
         films.unwrap_or_default()
     }
 
@@ -123,10 +130,13 @@ impl ShownSurface {
 }
 
 impl WetFilms {
-    /// The wet films of a tile by its counts; empty where nothing was painted.
+    /// The wet films of a tile by its counts, as one sheet; empty where nothing was painted.
     #[must_use]
     pub fn of(tile: Option<&Tile>) -> Self {
         let films = tile.map(|tile| counted_films(&tile.wet()));
-        Self(films.unwrap_or_default())
+        Self {
+            all: films.unwrap_or_default(),
+            sheets: None,
+        }
     }
 }

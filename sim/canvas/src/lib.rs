@@ -7,6 +7,7 @@
 //! | --- | --- |
 //! | [`quantum`] | the unit in which paint is counted |
 //! | [`planes`], [`own_plane`] | planes of counts, and a paint model's own planes |
+//! | [`sheet`] | what lies over the rest of its cell |
 //! | [`tile`], [`store`] | tiles, the tiles of a surface with their versions |
 //! | [`dry`], [`rewet`] | dried layers, and their rewetting |
 //! | [`page`] | pages in memory, and the document behind them |
@@ -72,6 +73,7 @@ pub mod planes;
 pub mod quantum;
 pub mod relief;
 pub mod rewet;
+pub mod sheet;
 pub mod store;
 pub mod tile;
 pub mod window;

@@ -1,5 +1,7 @@
 //! A window: leased tiles copied into contiguous planes, on which the kernels work.
 
+mod area;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -11,50 +13,11 @@ use crate::planes::painted;
 use crate::quantum::{QUANTUM_M, SLOTS};
 use crate::relief::Relief;
 use crate::relief::ride::ride;
+use crate::sheet;
 use crate::store::{TileRect, TileStore};
 use crate::tile::{Tile, TileId, Version};
 
-/// A rectangle of a window's cells.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Area {
-    /// Its lowest column and row.
-    pub from: [usize; 2],
-    /// Columns and rows.
-    pub size: [usize; 2],
-}
-
-impl Area {
-    /// True if it has no cell.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.size.contains(&0)
-    }
-
-    /// Its rows from the lowest up, in `count` parts.
-    pub fn parts(&self, count: usize) -> impl Iterator<Item = Self> + use<> {
-        let area = *self;
-        let row = move |part| area.size[1] * part / count;
-        (0..count).map(move |part| Self {
-            from: [area.from[0], area.from[1] + row(part)],
-            size: [area.size[0], row(part + 1) - row(part)],
-        })
-    }
-
-    /// Number of its cells.
-    #[must_use]
-    pub fn cells(&self) -> usize {
-        self.size[0] * self.size[1]
-    }
-
-    /// Its rows as index ranges of planes with this width.
-    pub fn rows(&self, width: usize) -> impl Iterator<Item = std::ops::Range<usize>> + use<> {
-        let (from, size) = (self.from, self.size);
-        (0..size[1]).map(move |y| {
-            let start = (from[1] + y) * width + from[0];
-            start..start + size[0]
-        })
-    }
-}
+pub use area::Area;
 
 /// Planes of a rectangle of tiles, row by row from the bottom.
 #[derive(Debug)]
@@ -64,6 +27,8 @@ pub struct Window {
     height: usize,
     limit: [usize; 2],
     wet: [Option<Vec<f32>>; SLOTS],
+    /// What of it is in the upper sheet.
+    upper: [Option<Vec<f32>>; SLOTS],
     /// The paint model's own planes, by their shape.
     own: BTreeMap<OwnShape, Vec<u8>>,
     base: Vec<f32>,
@@ -91,6 +56,7 @@ impl Window {
             height,
             limit: [0, 1].map(|i| rect.cells()[i].min(surface[i] - rect.from[i] as usize * TILE)),
             wet: [const { None }; SLOTS],
+            upper: [const { None }; SLOTS],
             own: BTreeMap::new(),
             base: vec![0.0; width * height],
             ride: Vec::new(),
@@ -121,6 +87,13 @@ impl Window {
             let start = window.corner(id);
             let wet = tile.wet();
             for plane in wet.own() {
+                if let Some(slot) = sheet::slot_of(plane.shape) {
+                    let to = window.upper[slot].get_or_insert_with(|| vec![0.0; width * height]);
+                    for (at, quanta) in sheet::quanta(&plane.bytes).enumerate() {
+                        to[start + at / TILE * width + at % TILE] = quanta;
+                    }
+                    continue;
+                }
                 let cell = plane.shape.cell_bytes();
                 let to = window.own_mut(plane.shape);
                 for (row, cells) in plane.bytes.chunks_exact(TILE * cell).enumerate() {
@@ -266,10 +239,10 @@ impl Window {
         ([&self.base[..], &self.ride[..]], planes)
     }
 
-    /// The planes in use, split into at most `count` parts of nearly equal size.
+    /// The planes in use, of all paint and of the upper sheet, split into at most `count` parts of nearly equal size.
     pub fn planes_in_parts(&mut self, count: usize) -> Vec<Vec<&mut Vec<f32>>> {
         let mut parts = Vec::new();
-        for (place, plane) in self.wet.iter_mut().flatten().enumerate() {
+        for (place, plane) in (self.wet.iter_mut().chain(&mut self.upper).flatten()).enumerate() {
             if place < count {
                 parts.push(Vec::new());
             }
@@ -320,6 +293,25 @@ impl Window {
         }
     }
 
+    /// True if there may be two sheets somewhere.
+    #[must_use]
+    pub fn has_sheets(&self) -> bool {
+        self.upper.iter().any(Option::is_some)
+    }
+
+    /// What of a paint is in the upper sheet, if any may be.
+    #[must_use]
+    pub fn upper(&self, slot: usize) -> Option<&[f32]> {
+        self.upper[slot].as_deref()
+    }
+
+    /// The plane of a slot, and what of it is in the upper sheet; created if absent.
+    pub fn sheets_mut(&mut self, slot: usize) -> [&mut Vec<f32>; 2] {
+        let cells = self.width * self.height;
+        [&mut self.wet[slot], &mut self.upper[slot]]
+            .map(|plane| plane.get_or_insert_with(|| vec![0.0; cells]))
+    }
+
     /// True if the window may contain any of a paint.
     #[must_use]
     pub fn has(&self, slot: usize) -> bool {
@@ -358,13 +350,20 @@ impl Window {
                 continue;
             }
             let start = self.corner(id);
-            let planes = self.wet.iter().enumerate().filter_map(|(slot, plane)| {
-                let plane = plane.as_ref()?;
+            let cells = |plane: &Vec<f32>| {
                 let mut cells = Vec::with_capacity(TILE * TILE);
                 for row in 0..TILE {
                     cells.extend_from_slice(&plane[start + row * self.width..][..TILE]);
                 }
-                Some((slot, Arc::from(cells)))
+                cells
+            };
+            let planes = self
+                .wet
+                .iter()
+                .enumerate()
+                .filter_map(|(slot, plane)| Some((slot, Arc::from(cells(plane.as_ref()?)))));
+            let upper = self.upper.iter().enumerate().filter_map(|(slot, plane)| {
+                Some(sheet::note(slot, cells(plane.as_ref()?).into_iter()))
             });
             let own = self.own.iter().map(|(shape, plane)| {
                 let cell = shape.cell_bytes();
@@ -378,7 +377,7 @@ impl Window {
                     bytes: bytes.into(),
                 }
             });
-            let planes = painted(planes).with_own(own);
+            let planes = painted(planes).with_own(own.chain(upper));
             let before = store.version(id).tile.as_deref();
             let dry = self.dry[place].clone();
             let tile = Some(Arc::new(Tile::paged(store.pager(), planes, dry, before)));

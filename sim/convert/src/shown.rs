@@ -1,8 +1,9 @@
 //! Stacked layers of a tile, in either colouring.
 
 use maulstick_appearance::colouring::{Colouring, EncodedTile, VolumeColours};
+use maulstick_appearance::show_paint::counted_films;
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
-use maulstick_canvas::quantum::QUANTUM_M;
+use maulstick_canvas::sheet::sheets;
 use maulstick_optics::colour::srgb_decode;
 use maulstick_optics::{FilmPlanes, Under};
 
@@ -149,21 +150,20 @@ impl Shown {
     ) {
         match self {
             Self::Films(under) => {
-                let films: Vec<(usize, Vec<f32>)> = planes
-                    .iter()
-                    .map(|(slot, plane)| {
-                        let film = plane.iter().map(|count| count * QUANTUM_M as f32);
-                        (*slot, film.collect())
-                    })
-                    .collect();
-                let paints: Vec<(usize, &[f32])> =
-                    films.iter().map(|(slot, film)| (*slot, &**film)).collect();
-                let film = FilmPlanes {
-                    paints: &paints,
-                    opacity: kind.opacity(),
-                    under: Under::Planes(under),
+                let films = match sheets(planes) {
+                    Some(sheets) => sheets.into(),
+                    None => vec![counted_films(planes)],
                 };
-                *under = palette.look.studio.bake(&film, TILE_CELLS);
+                for films in films {
+                    let paints: Vec<(usize, &[f32])> =
+                        films.iter().map(|(slot, film)| (*slot, &**film)).collect();
+                    let film = FilmPlanes {
+                        paints: &paints,
+                        opacity: kind.opacity(),
+                        under: Under::Planes(under),
+                    };
+                    *under = palette.look.studio.bake(&film, TILE_CELLS);
+                }
             }
             Self::Volumes(rgb) => {
                 if let Paints::Volumes(VolumePaints { of, by_slot, .. }) = paints {

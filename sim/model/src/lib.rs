@@ -11,6 +11,7 @@
 //! | [`path`] | its motion cut into steps |
 //! | [`footprint`] | the cells that a head touches in a step, and how deep |
 //! | [`transfer`] | amount transferred between brush and canvas along a path |
+//! | [`spread`] | a deposit along a step |
 //! | [`modes`] | the sampler and the vacuum cleaner |
 //! | [`rheology`] | properties of wet paint for the force on the hand |
 //! | [`trial`] | a brush on a bare surface, to measure a model alone |
@@ -65,5 +66,6 @@ pub mod interface;
 pub mod modes;
 pub mod path;
 pub mod rheology;
+pub mod spread;
 pub mod transfer;
 pub mod trial;

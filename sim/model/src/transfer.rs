@@ -23,7 +23,12 @@ pub struct Exchanging {
     pub most: f32,
     /// Share of a skin ([`SKIN`]) that changes places along a reference cell without a gap, where both sides are wet.
     pub swap: f32,
+    /// Share of the shear that a light touch lacks, 0 to 1.
+    pub glides: f32,
 }
+
+/// Press from which bristles shear paint as deep as they reach.
+const SHEARS_AT: f32 = 0.45;
 
 impl Exchanging {
     /// Bristles, which paint wets: their paint and the paint within reach even out.
@@ -32,11 +37,13 @@ impl Exchanging {
         evens: 1.0,
         most: MAX_TRANSFER,
         swap: 1.8,
+        glides: 1.0,
     };
     /// Soft hair that flares: it hardly takes paint up, and blends the paint that it moves through.
     pub(crate) const BLENDER: Self = Self {
         swap: 0.05,
         most: 0.0004,
+        glides: 0.0,
         ..Self::BRISTLES
     };
     /// A blade: it scrapes off paint above its edge, and fills hollows below it; ln(1 − .6).
@@ -45,7 +52,23 @@ impl Exchanging {
         evens: 0.0,
         most: 1.0,
         swap: 0.01,
+        glides: 0.0,
     };
+
+    /// Share of their full shear that bristles have under a press of 0 to 1: a loaded brush glides on wet paint that it
+    /// hardly presses, and leaves it as it lies.
+    #[must_use]
+    pub fn shear(&self, press: f32) -> f32 {
+        let share = (press / SHEARS_AT).clamp(0.0, 1.0);
+        1.0 - self.glides * (1.0 - share * share)
+    }
+
+    /// The exchange under a press of 0 to 1.
+    #[must_use]
+    pub fn pressed(self, press: f32) -> Self {
+        let swap = self.swap * self.shear(press);
+        Self { swap, ..self }
+    }
 
     /// Share of the paint that goes over along a travel in reference cells.
     #[must_use]

@@ -1,11 +1,14 @@
 //! A canvas, a brush and a hand for the measurements of looks, and the resulting films.
 
-use maulstick_appearance::Appearance;
+use maulstick_appearance::show_paint::counted_films;
+use maulstick_appearance::{Appearance, Bakery};
 use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::QUANTUM_M;
+use maulstick_canvas::sheet::sheets;
 use maulstick_num::atan2;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::edits::{Dry, Load};
+use maulstick_painting::picture::banded;
 use maulstick_painting::{EditError, Painting, PaintingSetup};
 use maulstick_rig::UserError;
 use maulstick_session::Offline;
@@ -227,20 +230,51 @@ impl Easel {
 
     /// Thickness of the wet paint, µm, of one slot or of all.
     pub fn film(&mut self, slot: Option<usize>) -> Map {
+        self.wet(slot, false)
+    }
+
+    /// Thickness of a wet paint in the upper sheet, µm.
+    pub fn upper(&mut self, slot: usize) -> Map {
+        self.wet(Some(slot), true)
+    }
+
+    fn wet(&mut self, slot: Option<usize>, is_upper: bool) -> Map {
         let painting = self.offline.painting_mut();
         painting.commit();
         let mut map = Map::new(self.size_mm, self.cell_mm);
-        if let Some(store) = painting.store(CANVAS) {
-            for (id, version) in store.iter() {
-                let Some(tile) = &version.tile else { continue };
-                for (at, plane) in &*tile.wet() {
-                    if slot.is_none_or(|slot| slot == *at) {
-                        map.add([id.x, id.y], plane, 1e6 * QUANTUM_M as f32);
-                    }
-                }
+        let Some(store) = painting.store(CANVAS) else {
+            return map;
+        };
+        for (id, version) in store.iter() {
+            let Some(tile) = &version.tile else { continue };
+            let wet = tile.wet();
+            let films = match sheets(&wet) {
+                Some([_, upper]) if is_upper => upper,
+                _ => counted_films(&wet),
+            };
+            for (_, film) in films
+                .iter()
+                .filter(|(at, _)| slot.is_none_or(|slot| slot == *at))
+            {
+                map.add([id.x, id.y], film, 1e6);
             }
         }
         map
+    }
+
+    /// Unlit colour: linear red, green, blue.
+    pub fn colours(&mut self) -> [Map; 3] {
+        let mut maps = [(); 3].map(|()| Map::new(self.size_mm, self.cell_mm));
+        if let Some(banded) = banded(self.offline.painting_mut(), CANVAS) {
+            let mut bakery = Bakery::default();
+            for (id, tile) in (0..banded.bands()).flat_map(|band| banded.tiles(band)) {
+                let shown = banded.shown(id, tile, &mut bakery);
+                for (map, plane) in maps.iter_mut().zip(&shown.rgb) {
+                    map.add([id.x, id.y], plane, 1.0);
+                }
+            }
+        }
+        maps
     }
 
     /// Height of tooth and dry relief, µm.

@@ -371,8 +371,7 @@ pub fn through_wet(trial: Trial) -> Result<Vec<Number>, UserError> {
     easel.load(trial.pick("Titanium White", PAINT))?;
     easel.stroke(&Stroke::along(25.0, 15.0, 65.0, 0.5))?;
     let part = ([38.0, 21.0], [50.0, 29.0]);
-    let blue = easel.film(Some(0)).cut(part.0, part.1);
-    let white = easel.film(Some(1)).cut(part.0, part.1);
+    let [blue, white] = [0, 1].map(|slot| easel.upper(slot).cut(part.0, part.1));
     let share = blue.mean() / (blue.mean() + white.mean());
     Ok(vec![
         ("through_wet.blue", share, ""),

@@ -10,7 +10,7 @@ use maulstick_canvas::dry::DryStack;
 use maulstick_canvas::tile::TileId;
 use maulstick_document::rows::shown_number;
 use maulstick_document::{ShownTile, TileCache};
-use maulstick_optics::backend::FilmBackend;
+use maulstick_optics::backend::{BackendError, FilmBackend};
 use maulstick_optics::{FilmPlanes, Under};
 
 use super::films::SteadyFilms;
@@ -196,20 +196,15 @@ impl Pyramid {
             .collect();
         let bare = &surface.bare;
         let films: Vec<WetFilms> = ids.iter().map(|id| bare.films(painted(id))).collect();
-        let planes: Vec<Vec<(usize, &[f32])>> = films.iter().map(WetFilms::planes).collect();
-        let batch: Vec<FilmPlanes<'_>> = planes
+        let under: Vec<Under<'_>> = baked
             .iter()
-            .zip(baked.iter().zip(&grounds))
-            .map(|(paints, (baked, ground))| FilmPlanes {
-                paints,
-                opacity: 1.0,
-                under: match baked {
-                    Some(baked) => Under::Planes(baked),
-                    None => ground.under(),
-                },
+            .zip(&grounds)
+            .map(|(baked, ground)| match baked {
+                Some(baked) => Under::Planes(baked),
+                None => ground.under(),
             })
             .collect();
-        let colours = match self.films.shade(&look.studio, &batch) {
+        let colours = match self.shade(look, &films, under) {
             Ok(colours) => colours,
             Err(error) => {
                 tracing::error!("tiles cannot be shown: {error}");
@@ -222,6 +217,41 @@ impl Pyramid {
             self.put_aside(look, (number, 0, *id), version, &shown);
             self.keep((number, 0, *id), version, Arc::new(shown));
         }
+    }
+
+    /// Colours of wet films over what lies under them.
+    fn shade(
+        &mut self,
+        look: &Appearance,
+        films: &[WetFilms],
+        mut under: Vec<Under<'_>>,
+    ) -> Result<Vec<[Vec<f32>; 3]>, BackendError> {
+        fn film<'a>(paints: &'a [(usize, &'a [f32])], under: Under<'a>) -> FilmPlanes<'a> {
+            FilmPlanes {
+                paints,
+                opacity: 1.0,
+                under,
+            }
+        }
+        let bodies: Vec<(usize, Vec<(usize, &[f32])>)> = (films.iter().enumerate())
+            .filter_map(|(tile, films)| Some((tile, films.body()?)))
+            .collect();
+        let batch: Vec<FilmPlanes<'_>> = bodies
+            .iter()
+            .map(|(tile, paints)| film(paints, under[*tile]))
+            .collect();
+        let baked = match batch[..] {
+            [] => Vec::new(),
+            _ => self.films.bake(&look.studio, &batch)?,
+        };
+        for ((tile, _), planes) in bodies.iter().zip(&baked) {
+            under[*tile] = Under::Planes(planes);
+        }
+        let planes: Vec<Vec<(usize, &[f32])>> = films.iter().map(WetFilms::planes).collect();
+        let batch: Vec<FilmPlanes<'_>> = (planes.iter().zip(under))
+            .map(|(paints, under)| film(paints, under))
+            .collect();
+        self.films.shade(&look.studio, &batch)
     }
 
     /// Tile beyond the edge of a surface, as if it continued.

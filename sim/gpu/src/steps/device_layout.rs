@@ -19,6 +19,8 @@ const MOST_BITS: u32 = 17;
 pub struct DeviceLayout {
     /// Slots of the paints, in order of plane.
     pub slots: Vec<usize>,
+    /// True if as many planes follow with what is in the upper sheet.
+    pub sheets: bool,
     /// Number of cells of the window.
     pub cells: usize,
     /// Number of texels of the brush.
@@ -46,12 +48,15 @@ pub struct Settled {
 }
 
 impl DeviceLayout {
-    /// Layout of a step's window and load; `None` where they are too large for the device.
-    pub fn new(step: &Step<'_>) -> Option<Self> {
+    /// Layout of a step's window and load, with the upper sheets where the model has `sheets`; `None` where they are too
+    /// large for the device.
+    pub fn new(step: &Step<'_>, sheets: bool) -> Option<Self> {
         let head = step.head;
         let in_use = |slot: &usize| step.window.has(*slot) || step.load.has(*slot);
+        let slots: Vec<usize> = (0..SLOTS).filter(in_use).collect();
         let layout = Self {
-            slots: (0..SLOTS).filter(in_use).collect(),
+            sheets: sheets && (step.window.has_sheets() || slots.len() > 1),
+            slots,
             cells: step.window.width() * step.window.height(),
             texels: step.load.texels(),
             strips: head.strips(),
@@ -72,7 +77,12 @@ impl DeviceLayout {
 
     /// A cell of the grid takes up to 32 bytes, of the window 4 a paint.
     fn bytes_by_cell(&self) -> usize {
-        (4 * self.slots.len()).max(32)
+        (4 * self.planes_in_use()).max(32)
+    }
+
+    /// Number of planes of the window.
+    pub fn planes_in_use(&self) -> usize {
+        self.slots.len() * (1 + usize::from(self.sheets))
     }
 
     /// Number of steps with contact before.
@@ -166,12 +176,12 @@ impl DeviceLayout {
 
     /// Planes of the window as bytes; `nothing` stands for one without paint.
     pub fn planes<'a>(&self, window: &'a Window, nothing: &'a [f32]) -> Vec<&'a [u8]> {
-        let plane = |slot: &usize| {
-            let mut planes = window.planes();
-            let found = planes.find(|(of, _)| of == slot);
-            cast_slice(found.map_or(nothing, |(_, plane)| plane))
-        };
-        self.slots.iter().map(plane).collect()
+        let all = self.slots.iter().map(|slot| window.plane(*slot));
+        let upper = self.slots.iter().filter(|_| self.sheets);
+        let planes = all.chain(upper.map(|slot| window.upper(*slot)));
+        planes
+            .map(|plane| cast_slice(plane.unwrap_or(nothing)))
+            .collect()
     }
 
     /// Writes the settled state into window and load.
@@ -185,11 +195,24 @@ impl DeviceLayout {
         let (width, first) = (window.width(), settled.rows.start);
         let cells = settled.rows.len() * width;
         let mut changed = Vec::new();
-        for (slot, counts) in self.slots.iter().zip(settled.planes.chunks_exact(cells)) {
-            if !window.has(*slot) && counts.iter().all(|count| *count == 0.0) {
+        let places = self.slots.iter().chain(&self.slots).enumerate();
+        for ((place, slot), counts) in places.zip(settled.planes.chunks_exact(cells)) {
+            let is_upper = place >= self.slots.len();
+            let known = if is_upper {
+                window.upper(*slot)
+            } else {
+                window.plane(*slot)
+            };
+            if known.is_none() && counts.iter().all(|count| *count == 0.0) {
                 continue;
             }
-            let plane = &mut window.plane_mut(*slot)[first * width..][..cells];
+            let plane = if is_upper {
+                let [_, upper] = window.sheets_mut(*slot);
+                upper
+            } else {
+                window.plane_mut(*slot)
+            };
+            let plane = &mut plane[first * width..][..cells];
             // A row of a tile at a time.
             let rows = plane.chunks_exact_mut(TILE).zip(counts.chunks_exact(TILE));
             for (place, (now, counts)) in rows.enumerate() {

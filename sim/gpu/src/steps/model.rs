@@ -19,6 +19,11 @@ const MOST_KEPT: usize = 256;
 
 /// Planner of a model's steps as stages.
 pub trait Planner: Send {
+    /// True if its paint may lie in two sheets.
+    fn has_sheets(&self) -> bool {
+        false
+    }
+
     /// Adds a step to a batch, with its number since the brush's load. Returns the rows of the window that it may
     /// change; `None` where the processor must do the step.
     fn plan(
@@ -164,7 +169,8 @@ impl PaintModel for GpuModel {
             return self.cpu.step(step);
         };
         if self.session.is_none() {
-            self.session = DeviceLayout::new(step).map(|on| Session {
+            let sheets = self.planner.has_sheets();
+            self.session = DeviceLayout::new(step, sheets).map(|on| Session {
                 on,
                 kept: KeptSteps::of(step.head.clone()),
                 batch: Batch::default(),

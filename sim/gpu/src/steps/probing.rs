@@ -39,7 +39,7 @@ impl<P: Planner> Probing<P> {
 
     /// Runs the stages of a step up to the last one called `last`; `None` where the device cannot do the step.
     pub fn run(&mut self, step: &Step<'_>, last: &str) -> Result<Option<Probed>, GpuError> {
-        let Some(on) = DeviceLayout::new(step) else {
+        let Some(on) = DeviceLayout::new(step, self.planner.has_sheets()) else {
             return Ok(None);
         };
         let mut batch = Batch::default();

@@ -6,6 +6,7 @@ use maulstick_canvas::quantum::CELL_MAX;
 use maulstick_model::brush::head::border;
 use maulstick_model::footprint::ribbons::{middle, rank};
 use maulstick_model::interface::{Step, Sweep, Transfer};
+use maulstick_model::spread::Spread;
 
 use super::device_layout::DeviceLayout;
 
@@ -64,9 +65,9 @@ pub struct StepRecord {
     swap: f32,
     film_most: f32,
     seep: [f32; 3],
-    /// Number of parts in which its paint moves.
-    pub parts: u32,
-    room: [u32; 2],
+    spread: u32,
+    sheets: u32,
+    shear: f32,
 }
 
 /// Bytes from one record to the next.
@@ -112,6 +113,8 @@ impl StepRecord {
         let (traits, after) = (&step.traits, sweep.to);
         let (origin, limit) = (step.window.origin(), step.window.limit());
         let (transfer, flow) = number_and_flow(step.handling.transfer);
+        let exchanging = traits.exchanging.pressed(after.press);
+        let spread = Spread::of(step);
         Self {
             half_widths: std::array::from_fn(|i| traits.half_width_before(i + 1)),
             // Modulo 2³²: beyond the window no cell is read.
@@ -153,14 +156,15 @@ impl StepRecord {
             ride_below: step.window.ride_below(),
             round: 2.0 * traits.half_thickness,
             follows: traits.follows / traits.parts as f32,
-            ln_kept: traits.exchanging.ln_kept,
-            evens: traits.exchanging.evens,
-            most_over: traits.exchanging.most,
-            swap: traits.exchanging.swap,
+            ln_kept: exchanging.ln_kept,
+            evens: exchanging.evens,
+            most_over: exchanging.most,
+            swap: exchanging.swap,
             film_most: traits.film_most as f32,
             seep: [traits.seep.beside, traits.seep.along, traits.seep.clings].map(|v| v as f32),
-            parts: traits.parts,
-            room: [0; 2],
+            spread: spread.cells << 1 | spread.axis,
+            sheets: u32::from(on.sheets),
+            shear: exchanging.shear(after.press),
         }
     }
 

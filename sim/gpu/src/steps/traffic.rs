@@ -28,12 +28,12 @@ impl Traffic {
 
     /// Counts a dispatch over a grid with this number of cells.
     pub fn dispatch(&self, kernel: &Kernel, on: &DeviceLayout, cells: u64) {
-        let (slots, strips) = (on.slots.len() as u64, on.strips as u64);
+        let (planes, strips) = (on.planes_in_use() as u64, on.strips as u64);
         let words = |binding: &Binding| match binding {
             Binding::Poses => on.poses_words() as u64,
             Binding::Head => 4 * strips + 6 * (on.faces + on.vertices) as u64,
             Binding::Segments => 16 * on.segments() as u64,
-            Binding::Planes | Binding::Other => slots * cells,
+            Binding::Planes | Binding::Other => planes * cells,
             Binding::Load => on.load_words() as u64,
             Binding::Asks => on.asks_words() as u64,
             Binding::Base => 2 * cells,

@@ -165,7 +165,7 @@ impl Workspace {
             }
             // A grid may extend beyond the window.
             let most = cells.max(on.cells as u64);
-            self.room(Binding::Other, most * on.slots.len() as u64);
+            self.room(Binding::Other, most * on.planes_in_use() as u64);
             self.fill(Binding::Blend, &[cast_slice(&batch.blends)])?;
             self.fill(Binding::Poses, &[cast_slice(&batch.poses)])?;
             self.records.filled(&gpu, &[cast_slice(&batch.records)])?;
@@ -223,10 +223,10 @@ impl Workspace {
         rows: Range<usize>,
         row: usize,
     ) -> Result<(Settled, StepReport), GpuError> {
-        let words = rows.len() * row * on.slots.len();
+        let words = rows.len() * row * on.planes_in_use();
         let load_words = on.load_words();
         let plane = |place: usize| 4 * ((place * on.cells + rows.start * row) as u64);
-        let mut ranges: Vec<(Binding, u64, u64)> = (0..on.slots.len())
+        let mut ranges: Vec<(Binding, u64, u64)> = (0..on.planes_in_use())
             .map(|place| (Binding::Planes, plane(place), 4 * (rows.len() * row) as u64))
             .collect();
         ranges.push((Binding::Load, 0, 4 * load_words as u64));

@@ -93,6 +93,13 @@ impl Footprint {
         self.gather(step.window);
     }
 
+    /// Greatest number of wet quanta on a cell of the grid, before the step.
+    #[must_use]
+    pub fn fullest(&self) -> f32 {
+        let lying = self.lying.quanta.iter().copied();
+        lying.fold(0.0, f32::max)
+    }
+
     /// Records the height of paint behind the brush.
     pub fn note_left(&mut self, step: &mut Step<'_>) {
         self.lying.weigh(self.around, step);

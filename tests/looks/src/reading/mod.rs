@@ -6,12 +6,14 @@
 //! | [`case`] | conditions of a measurement, and its strokes |
 //! | [`colour`] | colour that travels between wet paints |
 //! | [`film`] | glazes, beads, brushes painted out |
+//! | [`overlay`] | strokes over wet strokes |
 //! | [`skin`] | relief of bristles, ends, edges, lattices |
 //! | [`spectrum`] | power of a relief by wavelength |
 
 pub mod case;
 pub mod colour;
 pub mod film;
+pub mod overlay;
 pub mod skin;
 pub mod spectrum;
 
@@ -78,6 +80,7 @@ pub const ALL: &[Readings] = &[
     colour::CARRY,
     colour::SMEAR,
     colour::SOFTEN,
+    overlay::OVER_WET,
     film::GLAZE,
     film::DRY_BRUSH,
 ];

@@ -43,6 +43,10 @@ pub(crate) fn make(gpu: Device, _choice: Choice) -> Result<OnDevice, GpuError> {
 struct Steps;
 
 impl Planner for Steps {
+    fn has_sheets(&self) -> bool {
+        true
+    }
+
     fn plan(
         &self,
         step: &Step<'_>,
@@ -55,7 +59,7 @@ impl Planner for Steps {
         let record = StepRecord::new(step, &step.sweep, on, of);
         let record = record.draw(step, &step.sweep, &mut batch.poses);
         let call = batch.next(record, 0);
-        let stages = stages(record.parts);
+        let stages = stages(step.traits.parts);
         batch
             .calls
             .extend(stages.map(|stage| Call { stage, ..call }));

@@ -3,6 +3,8 @@
 use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::transfer::{NEAR, POOL, SKIN, SPLITS};
 
+use crate::stages::sheets::{COVERS, LN_ON_TOP, SHEET};
+use crate::stages::sides::TAKES;
 use crate::stages::velocity::{EASE, SLIP, SQUISH, STABLE};
 
 use maulstick_gpu::steps::kernels::{Binding as B, Groups, Kernel, RASTERIZER};
@@ -95,18 +97,32 @@ pub(crate) static KERNELS: [Kernel; 14] = [
             ("POOL", POOL as f64),
             ("SPLITS", SPLITS as f64),
         ],
-        bindings: &[B::Load, B::Asks, B::Contacts, B::Totals, B::Wants],
-        groups: Groups::Planned(0),
-    },
-    Kernel {
-        name: "exchange_apply",
-        source: &[COMMON, include_str!("shaders/exchange_apply.wgsl")],
-        constants: &[],
         bindings: &[
             B::Planes,
             B::Load,
             B::Asks,
             B::Contacts,
+            B::Faces,
+            B::Totals,
+            B::Wants,
+        ],
+        groups: Groups::Planned(0),
+    },
+    Kernel {
+        name: "exchange_apply",
+        source: &[COMMON, include_str!("shaders/exchange_apply.wgsl")],
+        constants: &[
+            ("SHEET", SHEET as f64),
+            ("COVERS", COVERS as f64),
+            ("LN_ON_TOP", LN_ON_TOP as f64),
+            ("TAKES", TAKES as f64),
+        ],
+        bindings: &[
+            B::Planes,
+            B::Load,
+            B::Asks,
+            B::Contacts,
+            B::Faces,
             B::Totals,
             B::Wants,
             B::Stats,

@@ -4,19 +4,26 @@
 //! swapped, so a brush that is full, or that carries as much as the canvas, still takes on its colour. The demands of
 //! cells on one brush texel are summed, scaled together where they exceed its stock, and truncated once.
 
-use maulstick_canvas::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
+mod granted;
+mod meeting;
+
+use maulstick_canvas::quantum::SLOTS;
 use maulstick_num::fork_join::{Balance, each};
 use maulstick_num::select::{larger, smaller};
 use maulstick_num::wide;
 use std::ops::Range;
 
 use maulstick_model::brush::load::BrushLoad;
-use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::footprint::Footprint;
 use maulstick_model::footprint::contact::Contact;
 use maulstick_model::footprint::shares_of;
-use maulstick_model::interface::{Handling, Step, Transfer};
-use maulstick_model::transfer::{Exchanging, POOL};
+use maulstick_model::interface::{Step, Transfer};
+
+use granted::Granted;
+use meeting::{Meetings, want};
+
+use super::sheets::{OnTexel, Sheet, Sheets, look, may_lie};
+use super::sides::Sides;
 
 /// Buffers of a step. Few of the brush's many texels touch at a time: these are renumbered in each step, so that the
 /// others cost nothing.
@@ -29,6 +36,9 @@ pub struct Exchange {
     /// Index of each texel of the brush in `texels`; [`ABSENT`] unless it touches.
     place_of: Vec<u32>,
     granted: Granted,
+    /// What is in the film of each of these texels.
+    on_texels: Vec<OnTexel>,
+    sides: Sides,
     balance: Balance,
     /// For one paint, the share of the demand that each of these texels grants.
     gives: Vec<f32>,
@@ -36,20 +46,11 @@ pub struct Exchange {
     held: Vec<f32>,
 }
 
-/// Paint that each touching texel gives and takes.
-#[derive(Clone, Debug, Default)]
-struct Granted {
-    /// Quanta demanded from the texel, and offered to it; later the grant per quantum in its film.
-    asked: Vec<[f32; 2]>,
-    /// Share of the offers that the texel takes.
-    taken: Vec<f32>,
-    /// Quanta in its film.
-    film: Vec<f32>,
-}
-
 /// One core's contacts, in order.
 #[derive(Clone, Debug, Default)]
 struct Share {
+    /// Number of its first contact.
+    first: usize,
     meetings: Meetings,
     /// Quanta that each contact demands from the brush, and offers to it.
     wants: [Vec<f32>; 2],
@@ -61,129 +62,14 @@ struct Share {
     shares: Vec<f32>,
     /// Share of the paint taken up that leaves each contact's cell.
     leaves: Vec<f32>,
+    /// The two sheets of its cells, where there may be two.
+    sheets: Option<Sheets>,
     /// Change of one paint on each of the texels, quanta: a wide one exceeds the exact range of `f32`.
     change: Vec<i32>,
 }
 
-/// [`Meeting`]s, a plane each.
-#[derive(Clone, Debug, Default)]
-struct Meetings {
-    travel: Vec<f32>,
-    cover: Vec<f32>,
-    on_brush: Vec<f32>,
-    lying: Vec<f32>,
-    fraction: Vec<f32>,
-    gap: Vec<f32>,
-}
-
-impl Meetings {
-    fn of(&mut self, contacts: &[Contact], films: &[u32], traits: &BrushTraits) {
-        let on_brush = |contact: &Contact| {
-            films[contact.texel as usize] as f32 * traits.film_units_per_quantum
-        };
-        for plane in [
-            &mut self.travel,
-            &mut self.cover,
-            &mut self.on_brush,
-            &mut self.fraction,
-            &mut self.gap,
-        ] {
-            plane.clear();
-        }
-        self.travel
-            .extend(contacts.iter().map(|contact| contact.travel(traits)));
-        self.cover
-            .extend(contacts.iter().map(|contact| contact.cover));
-        self.on_brush.extend(contacts.iter().map(on_brush));
-        self.fraction
-            .extend(contacts.iter().map(|contact| contact.fraction));
-        let gap = |contact: &Contact| contact.gap * traits.units_per_cell;
-        self.gap.extend(contacts.iter().map(gap));
-    }
-}
-
 /// Index of a texel that does not touch.
 const ABSENT: u32 = u32::MAX;
-/// Greatest share of a film used up at once: reduced so that rounding never takes more than there is.
-const SAFE_SHARE: f32 = 1.0 - 1.0 / 1_048_576.0;
-
-/// State of a contact before the exchange.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Meeting {
-    /// Path of the brush, reference cells.
-    pub travel: f32,
-    /// Share of the cell that is covered, 0 to 1.
-    pub cover: f32,
-    /// The brush's film, units.
-    pub on_brush: f32,
-    /// Wet paint on the cell, quanta.
-    pub lying: f32,
-    /// Share of it that the brush reaches.
-    pub fraction: f32,
-    /// Gap between brush and paint, units.
-    pub gap: f32,
-}
-
-/// Demand of a contact: quanta from the brush, and to it.
-#[must_use]
-#[inline(always)]
-pub(crate) fn wanted(meeting: &Meeting, rule: &Exchanging, handling: &Handling) -> [f32; 2] {
-    let quanta = meeting.cover * QUANTA_PER_UNIT as f32;
-    let lying = meeting.lying * (1.0 / QUANTA_PER_UNIT as f32);
-    let on_canvas = lying * meeting.fraction;
-    let (net, swap) = match handling.transfer {
-        Transfer::Marker { flow } => (flow * meeting.travel, 0.0),
-        _ => {
-            let share = rule.share(meeting.travel);
-            let amounts = [meeting.on_brush, on_canvas, lying, meeting.gap];
-            let net = rule.transfer(amounts, meeting.travel, share);
-            let wet = [meeting.on_brush, lying, larger(meeting.gap, 0.0)];
-            (net, rule.swapped(wet, meeting.travel))
-        }
-    };
-    let hollow = larger(meeting.gap, 0.0) * QUANTA_PER_UNIT as f32;
-    let pool = smaller(hollow, POOL * handling.most);
-    let most = smaller(handling.most + pool, CELL_MAX as f32);
-    let room = larger(most - meeting.lying, 0.0);
-    // Swapped paint has room on both sides, or stays on both.
-    let swap = smaller(swap * quanta, room);
-    let given = smaller(larger(net, 0.0) * quanta + swap, room);
-    let taken = smaller(larger(-net, 0.0) * quanta + swap, meeting.lying);
-    [given.floor(), taken.floor()]
-}
-
-wide! {
-    /// Demands of all contacts: quanta from the brush, and to it.
-    fn want(
-        meetings: &Meetings,
-        rule: &Exchanging,
-        handling: &Handling,
-        wants: &mut [Vec<f32>; 2],
-    ) {
-        let count = meetings.travel.len();
-        let [given, taken] = wants;
-        for plane in [&mut *given, &mut *taken] {
-            plane.clear();
-            plane.resize(count, 0.0);
-        }
-        let (given, taken) = (&mut given[..count], &mut taken[..count]);
-        let (travel, cover) = (&meetings.travel[..count], &meetings.cover[..count]);
-        let (on_brush, lying) = (&meetings.on_brush[..count], &meetings.lying[..count]);
-        let (fraction, gap) = (&meetings.fraction[..count], &meetings.gap[..count]);
-        for i in 0..count {
-            let meeting = Meeting {
-                travel: travel[i],
-                cover: cover[i],
-                on_brush: on_brush[i],
-                lying: lying[i],
-                fraction: fraction[i],
-                gap: gap[i],
-            };
-            [given[i], taken[i]] = wanted(&meeting, rule, handling);
-        }
-    }
-}
-
 wide! {
     /// One paint, both ways: `change` is the amount added to each texel.
     fn swap_paint(own: &mut Share, gives: &[f32], plane: &mut Cells<'_>) {
@@ -195,6 +81,29 @@ wide! {
             let given = (given * gives[place]).floor();
             let taken = (*count * share).floor();
             *count += given - (leaves * taken).floor();
+            own.change[place] += (taken - given) as i32;
+        }
+    }
+}
+
+wide! {
+    /// One paint, both ways, where it may lie in two sheets.
+    fn swap_sheets(own: &mut Share, gives: &[f32], planes: &mut [Cells<'_>; 2]) {
+        let [plane, upper] = planes;
+        let Some(Sheets { parted: [from_top, from_body, kept, fits], .. }) = &own.sheets else {
+            return;
+        };
+        for (i, cell) in own.cells.iter().enumerate() {
+            let at = *cell as usize - plane.first;
+            let (count, above) = (&mut plane.cells[at], &mut upper.cells[at]);
+            let place = own.places[i] as usize;
+            let given = (own.wants[0][i] * gives[place]).floor();
+            let top = smaller(*above, *count);
+            let off = [(top * from_top[i]).floor(), ((*count - top) * from_body[i]).floor()];
+            let taken = off[0] + off[1];
+            *count += given - (own.leaves[i] * taken).floor();
+            let left = ((top - (own.leaves[i] * off[0]).floor()) * kept[i]).floor();
+            *above = ((left + given) * fits[i]).floor();
             own.change[place] += (taken - given) as i32;
         }
     }
@@ -227,7 +136,31 @@ impl Exchange {
         let sponge = step.handling.transfer == Transfer::Sponge;
         granted.grant(&self.texels, step.load, &step.traits, sponge);
         let (granted, lasting) = (&*granted, step.lasting);
-        each(used, |share| share.share(granted, lasting));
+        let layered = may_lie(step);
+        if layered {
+            look(&self.texels, step.load, &mut self.on_texels);
+        }
+        let on_texels = layered.then_some((&self.texels[..], &self.on_texels[..]));
+        let shared = &*step;
+        each(used, |share| {
+            share.share(granted, lasting);
+            share.weigh(shared, on_texels);
+        });
+        let spreads = self.sides.find(footprint, step);
+        if spreads && layered {
+            let covers = used.iter().flat_map(|share| share.covers(granted));
+            self.sides.cover(covers);
+        }
+        let sides = spreads.then_some(&self.sides);
+        each(used, |share| share.part(granted, sides));
+        if spreads && layered {
+            let contacts = self.shares[..self.used].iter().flat_map(Share::layered);
+            let on_texels = &self.on_texels;
+            let contacts = contacts.map(|(cell, is_layered, place)| {
+                (cell as usize, is_layered, on_texels[place as usize].only)
+            });
+            self.sides.note_layered(step.window, contacts);
+        }
         let mut from_nowhere = [0; SLOTS];
         for slot in 0..SLOTS {
             let change = self.exchange(slot, step);
@@ -250,6 +183,7 @@ impl Exchange {
         self.shares.resize_with(shares, Share::default);
         for (share, range) in self.shares.iter_mut().zip(ranges) {
             share.places.clear();
+            share.first = range.start;
             for contact in &footprint.contacts[range.clone()] {
                 let place = &mut self.place_of[contact.texel as usize];
                 if *place == ABSENT {
@@ -285,21 +219,46 @@ impl Exchange {
         self.gives.clear();
         self.gives
             .extend(held.map(|(held, [drawn, _])| held * drawn));
-        let plane = step.window.plane_mut(slot);
         let sponge = step.handling.transfer == Transfer::Sponge;
         let counted = sponge || step.lasting;
-        let before = if counted { self.on_cells(plane) } else { 0 };
-        let (gives, mut rest) = (&self.gives, &mut plane[..]);
+        let before = if counted {
+            self.on_cells(step.window.plane_mut(slot))
+        } else {
+            0
+        };
+        let layered = self.in_use().iter().any(|share| share.sheets.is_some());
+        let mut planes = if layered {
+            step.window.sheets_mut(slot).map(|plane| &mut plane[..])
+        } else {
+            [&mut step.window.plane_mut(slot)[..], &mut []]
+        };
+        let gives = &self.gives;
         // Contacts are in the order of their cells, so the last share has the last of them.
         let shares = self.shares[..self.used].iter_mut().rev();
         let shares = shares.filter_map(|share| {
             let first = *share.cells.first()? as usize;
-            let cells = rest.split_off_mut(first..)?;
-            Some((share, Cells { first, cells }))
+            let cells = planes.each_mut().map(|rest| Cells {
+                first,
+                cells: rest.split_off_mut(first..).unwrap_or_default(),
+            });
+            Some((share, cells))
         });
         each(&mut shares.collect::<Vec<_>>(), |(share, cells)| {
-            swap_paint(share, gives, cells);
+            if share.sheets.is_some() {
+                swap_sheets(share, gives, cells);
+            } else {
+                swap_paint(share, gives, &mut cells[0]);
+            }
         });
+        if self.sides.are_given() {
+            if layered {
+                let [_, upper] = step.window.sheets_mut(slot);
+                self.sides.sink(upper);
+            }
+            if on_brush {
+                self.spread(slot, step);
+            }
+        }
         // Counted paint: one side gains what the other loses.
         if !counted {
             return 0;
@@ -311,6 +270,38 @@ impl Exchange {
             changes.map(|change| i64::from(*change)).sum()
         };
         self.on_cells(step.window.plane_mut(slot)) - before + onto_brush
+    }
+
+    /// Spreads one paint that was given along the step.
+    fn spread(&self, slot: usize, step: &mut Step<'_>) {
+        let gives = &self.gives;
+        let given = self.in_use().iter().flat_map(|share| {
+            let wants = share.wants[0].iter().zip(&share.places);
+            let given = wants.map(|(given, place)| (given * gives[*place as usize]).floor());
+            share.cells.iter().zip(given)
+        });
+        let parts = || {
+            let given = given.clone().enumerate();
+            given.flat_map(|(contact, (cell, given))| {
+                self.sides.parts(contact, *cell as usize, given)
+            })
+        };
+        let plane = step.window.plane_mut(slot);
+        for part in parts() {
+            plane[part.cells[0]] -= part.quanta;
+            plane[part.cells[1]] += part.quanta;
+        }
+        if !step.window.has_sheets() {
+            return;
+        }
+        let [_, upper] = step.window.sheets_mut(slot);
+        for part in parts().filter(|part| part.layered[0]) {
+            let above = &mut upper[part.cells[0]];
+            *above = larger(*above - part.quanta, 0.0);
+        }
+        for part in parts().filter(|part| part.layered[1]) {
+            upper[part.cells[1]] += part.quanta;
+        }
     }
 
     /// Quanta of a plane on the contacts.
@@ -347,10 +338,13 @@ impl Share {
         self.cells
             .extend(contacts.iter().map(|contact| contact.cell));
         step.window.totals(&self.cells, &mut self.meetings.lying);
-        self.meetings.of(contacts, step.load.films(), &step.traits);
+        let (exchanging, press) = (&step.traits.exchanging, step.sweep.to.press);
+        let shear = exchanging.shear(press);
+        self.meetings
+            .of(contacts, step.load.films(), &step.traits, shear);
         want(
             &self.meetings,
-            &step.traits.exchanging,
+            &exchanging.pressed(press),
             &step.handling,
             &mut self.wants,
         );
@@ -391,31 +385,63 @@ impl Share {
             if goes > comes { comes / goes } else { 1.0 }
         }));
     }
-}
 
-impl Granted {
-    /// Scales the demands on each texel, and the offers to it, to its stock and capacity.
-    fn grant(&mut self, texels: &[u32], load: &BrushLoad, traits: &BrushTraits, sponge: bool) {
-        let most = traits.film_most as f32;
-        self.taken.clear();
-        self.film.clear();
-        for (texel, [drawn, offered]) in texels.iter().zip(&mut self.asked) {
-            let film = load.film(*texel as usize) as f32;
-            let granted = if *drawn > film && !sponge {
-                SAFE_SHARE * film / *drawn
-            } else {
-                1.0
-            };
-            let room = (most - film + *drawn * granted).max(0.0);
-            let taken = if *offered > room && !sponge {
-                room / *offered
-            } else {
-                1.0
-            };
-            // By quantum of all paints in the film, from which each paint's share follows.
-            *drawn = if film > 0.0 { granted / film } else { 0.0 };
-            self.taken.push(taken);
-            self.film.push(film);
-        }
+    /// For each contact its cell, whether two sheets may lie there, and the place of its texel.
+    fn layered(&self) -> impl Iterator<Item = (u32, bool, u32)> + Clone {
+        let fits = self.sheets.iter().flat_map(|sheets| &sheets.parted[3]);
+        let cells = self.cells.iter().zip(&self.places).zip(fits);
+        cells.map(|((cell, place), fits)| (*cell, *fits > 0.0, *place))
+    }
+
+    /// Weighs the sheets of its cells, where there may be two; with the touching texels, and what is on them.
+    fn weigh(&mut self, step: &Step<'_>, on: Option<(&[u32], &[OnTexel])>) {
+        let Some((texels, found)) = on else {
+            self.sheets = None;
+            return;
+        };
+        let sheets = self.sheets.get_or_insert_default();
+        let on_texels = self.places.iter().map(|place| {
+            let place = *place as usize;
+            (texels[place], found[place])
+        });
+        sheets.weigh(step.window, step.load, &self.cells, on_texels);
+    }
+
+    /// Quanta that a contact's texel gives.
+    fn comes(&self, i: usize, granted: &Granted) -> f32 {
+        let place = self.places[i] as usize;
+        self.wants[0][i] * granted.asked[place][0] * granted.film[place]
+    }
+
+    /// By contact, the quanta that come of a mixture that is not that of the upper sheet.
+    fn covers(&self, granted: &Granted) -> impl Iterator<Item = f32> {
+        let differ = self.sheets.iter().flat_map(Sheets::differ).enumerate();
+        differ.map(|(i, differs)| differs * self.comes(i, granted))
+    }
+
+    /// Parts the sheets of its cells, where there may be two.
+    fn part(&mut self, granted: &Granted, sides: Option<&Sides>) {
+        let Some(mut sheets) = self.sheets.take() else {
+            return;
+        };
+        let differ: Vec<f32> = sheets.differ().collect();
+        let meetings = &self.meetings;
+        sheets.part(|i, top| {
+            let comes = self.comes(i, granted);
+            Sheet {
+                top,
+                lying: meetings.lying[i],
+                fraction: meetings.fraction[i],
+                travel: meetings.travel[i],
+                comes,
+                goes: self.wants[1][i] * granted.taken[self.places[i] as usize],
+                leaves: self.leaves[i],
+                covered: match sides {
+                    Some(sides) => sides.covered(self.first + i),
+                    None => differ[i] * comes,
+                },
+            }
+        });
+        self.sheets = Some(sheets);
     }
 }

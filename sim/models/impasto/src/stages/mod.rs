@@ -8,6 +8,8 @@
 //! | [`velocity`] | 2: velocity of the paint under it |
 //! | [`advection`] | 3: motion of the paint, counted |
 //! | [`exchange`] | 4 and 5: Algorithm 3, both ways |
+//! | [`sheets`] | what lies on top stays there |
+//! | [`sides`] | deposits along the step |
 //! | [`bristle_flow`] | paint moves within the head |
 //! | [`rest`], [`levelling`] | after the stroke |
 //! | [`modes`](maulstick_model::modes) | the sampler and the vacuum cleaner, in place of 2 to 5 |
@@ -18,6 +20,8 @@ pub mod exchange;
 pub mod levelling;
 pub mod rest;
 pub mod seep;
+pub mod sheets;
+pub mod sides;
 pub mod step;
 pub mod velocity;
 

@@ -192,10 +192,23 @@ fn paint_goes_where_it_is_pushed_and_none_is_lost() {
     assert!(turned > 100.0 * QUANTA, "the other order passes: {turned}");
 }
 
+/// Press of the heads.
+const PRESS: f32 = 0.3;
+
+/// Share of the shear: bristles shear fully from a press of .45 on, and less by the square.
+fn shear(blade: bool) -> f64 {
+    if blade {
+        1.0
+    } else {
+        (f64::from(PRESS) / 0.45).powi(2)
+    }
+}
+
 /// Baxter 2004, Algorithm 3, by path length, of which a reference cell leaves `kept`, with a film that bridges a gap:
 /// units to the canvas, back, and swapped. The part of a film beyond its gap fills it 16 times as fast, until 3/10
 /// of all are on the brush. A blade does only that, and takes up all that it reaches.
 fn wanted([a_b, a_c, lies, gap]: [f64; 4], travel: f64, (kept, blade): (f64, bool)) -> [f64; 3] {
+    let a_c = a_c * shear(blade);
     let goes = |times: f64| 1.0 - maulstick_num::powf(kept, times * travel);
     let free = (a_b - gap).max(0.0);
     let bridged = if blade {
@@ -213,7 +226,8 @@ fn wanted([a_b, a_c, lies, gap]: [f64; 4], travel: f64, (kept, blade): (f64, boo
     let donor = if difference > 0.0 { a_b - fill } else { a_c };
     let net = (goes(1.0) * difference.abs()).min(most * travel).min(donor);
     // Films that touch across a gap shear a skin of 70 µm, half as much where the gap is 15 µm.
-    let sheared = if blade { 0.01 } else { 1.8 } * travel * 15e-6 / (15e-6 + 0.025 * gap);
+    let swap = if blade { 0.01 } else { 1.8 };
+    let sheared = shear(blade) * swap * travel * 15e-6 / (15e-6 + 0.025 * gap);
     let swap = sheared.min(1.0) * (a_b - gap).clamp(0.0, 70e-6 / 0.025).min(lies);
     if difference > 0.0 {
         [fill + net, 0.0, swap]
@@ -292,6 +306,7 @@ fn paint_goes_both_ways() {
                 (_, false) => Exchanging::BRISTLES,
                 (_, true) => Exchanging::BLADE,
             };
+            scene.to.press = PRESS;
             scene
         };
         let mut pushed = scene();

@@ -1,4 +1,4 @@
-//! Stages 4 and 5: Algorithm 3 by path length, both ways.
+//! Stages 4 and 5: Algorithm 3 by path length, both ways, and what lies on top afterwards.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use maulstick_model::footprint::Footprint;
 use maulstick_model::footprint::contact::Contact;
 use maulstick_model::interface::{Handling, Transfer};
 
-use crate::scene::{CELL_M, Scene, lying};
+use crate::scene::{CELL_M, Random, Scene, lying};
 
 /// Exchange rule of a head: the share kept along a reference cell, whether it is a blade, and the share of a
 /// skin that is swapped along a reference cell without a gap.
@@ -23,7 +23,13 @@ struct Rule {
     /// Most that goes over along a reference cell, m.
     most_m: f64,
     swap: f64,
+    /// Share of the shear under this press.
+    shear: f64,
 }
+
+/// Press of the heads, and its share of the shear of bristles: these shear fully from .45 on, and less by the square.
+const PRESS: f32 = 0.3;
+const LIGHT: f64 = 4.0 / 9.0;
 
 const RULES: [(&str, Rule); 3] = [
     (
@@ -33,6 +39,7 @@ const RULES: [(&str, Rule); 3] = [
             blade: false,
             most_m: 1e-4,
             swap: 1.8,
+            shear: LIGHT,
         },
     ),
     (
@@ -42,6 +49,7 @@ const RULES: [(&str, Rule); 3] = [
             blade: true,
             most_m: 0.025,
             swap: 0.01,
+            shear: 1.0,
         },
     ),
     (
@@ -51,6 +59,7 @@ const RULES: [(&str, Rule); 3] = [
             blade: false,
             most_m: 1e-5,
             swap: 0.05,
+            shear: 1.0,
         },
     ),
 ];
@@ -81,11 +90,14 @@ fn algorithm_3([a_b, a_c, lies, gap]: [f64; 4], travel: f64, rule: Rule) -> f64 
 struct Expected {
     cells: BTreeMap<(usize, usize), [f64; 2]>,
     films: BTreeMap<(usize, usize), [f64; 2]>,
+    uppers: BTreeMap<(usize, usize), [f64; 2]>,
     deposits: usize,
     uptakes: usize,
     swaps: usize,
     overdrawn: usize,
     overfilled: usize,
+    /// Contacts that take from the upper sheet alone, from both sheets, and those whose sheet sinks as it is too thick.
+    sheets: [usize; 3],
 }
 
 impl Expected {
@@ -96,6 +108,9 @@ impl Expected {
         self.swaps += other.swaps;
         self.overdrawn += other.overdrawn;
         self.overfilled += other.overfilled;
+        for (sum, more) in self.sheets.iter_mut().zip(other.sheets) {
+            *sum += more;
+        }
     }
 }
 
@@ -107,6 +122,39 @@ fn film(load: &BrushLoad, texel: usize) -> f64 {
 fn on(window: &Window, slot: usize, cell: usize) -> f64 {
     let plane = window.planes().find(|(of, _)| *of == slot);
     plane.map_or(0.0, |(_, plane)| f64::from(plane[cell]))
+}
+
+/// What of a paint is in the upper sheet of a cell.
+fn above(window: &Window, slot: usize, cell: usize) -> f64 {
+    let noted = window
+        .upper(slot)
+        .map_or(0.0, |upper| f64::from(upper[cell]));
+    noted.min(on(window, slot, cell))
+}
+
+/// Share of the upper sheet's paint that goes to the brush, of the body's, share of the rest of the sheet that does not
+/// sink, and share of that and of what comes which stays on top, after `travel` reference cells of bristles that shear
+/// `reach` quanta. Bristles take from as deep as they shear. A sheet is at most 250 µm thick; where they plough through
+/// all paint half of it sinks along 20 mm; under 20 µm of quite another mixture 1/e of it is left.
+fn parted(
+    [top, body]: [f64; 2],
+    [comes, goes]: [f64; 2],
+    (reach, travel, differs): (f64, f64, f64),
+) -> [f64; 4] {
+    const QUANTUM_M: f64 = 0.025 / QUANTA_PER_UNIT;
+    let reach = reach.max(goes);
+    let over = top / reach.max(1.0);
+    let off_top = (goes * over.min(1.0)).min(top);
+    let halves = travel * 0.25 / 20.0 * (1.0 - over).max(0.0);
+    let covered = comes * differs * QUANTUM_M / 20e-6;
+    let kept = maulstick_num::powf(0.5, halves) * maulstick_num::exp(-covered);
+    let left = (top - off_top) * kept + comes;
+    [
+        off_top / top.max(1.0),
+        (goes - off_top) / body.max(1.0),
+        kept,
+        (250e-6 / QUANTUM_M / left.max(1.0)).min(1.0),
+    ]
 }
 
 /// Quanta that a cell demands from its texel, and offers to it.
@@ -124,13 +172,14 @@ fn wants(
     let travel = (u * u + v * v).sqrt() * f64::from(traits.cell_per_reference);
     let a_b = film(load, c.texel as usize) * f64::from(traits.film_units_per_quantum);
     let lies = lying / QUANTA_PER_UNIT;
-    let a_c = lies * f64::from(c.fraction);
+    let a_c = lies * f64::from(c.fraction) * rule.shear;
     // A unit is 25 mm.
     let gap = f64::from(c.gap) * CELL_M / 0.025;
     let mut net = algorithm_3([a_b, a_c, lies, gap], travel, rule);
     // Films that touch across a gap shear a skin of 70 µm, half as much where the gap is 15 µm.
     let skin = (a_b - gap).clamp(0.0, 70e-6 / 0.025).min(lies);
-    let mut both = (rule.swap * travel * 15e-6 / (15e-6 + 0.025 * gap)).min(1.0) * skin;
+    let mut both =
+        (rule.shear * rule.swap * travel * 15e-6 / (15e-6 + 0.025 * gap)).min(1.0) * skin;
     if let Transfer::Marker { flow } = handling.transfer {
         (net, both) = (f64::from(flow) * travel, 0.0);
     }
@@ -179,21 +228,50 @@ fn oracle(contacts: &[Contact], scene: &Scene, rule: Rule) -> Expected {
         expected.overdrawn += usize::from(*given > 1.0 && granted < 1.0 && there > 0.0);
         expected.overfilled += usize::from(*taken > 1.0 && taken_in < 1.0 && room > 0.0);
         let lying: f64 = (0..SLOTS).map(|slot| on(window, slot, cell)).sum();
+        let top: f64 = (0..SLOTS).map(|slot| above(window, slot, cell)).sum();
+        let of_film = |slot: usize| {
+            load.film_of(slot)
+                .map_or(0.0, |film| f64::from(film[texel]))
+        };
+        let is_there = |slot: &usize| on(window, *slot, cell) + of_film(*slot) > 0.0;
+        let several = (0..SLOTS).filter(is_there).count() > 1;
+        let [u, v] = c.moved.map(f64::from);
+        let travel = (u * u + v * v).sqrt() * f64::from(traits.cell_per_reference);
+        let comes = if there > 0.0 { given * granted } else { 0.0 };
+        let sides = [comes, taken * taken_in];
+        let reach = lying * f64::from(c.fraction) * rule.shear;
+        let dot = |of: &dyn Fn(usize) -> [f64; 2]| -> f64 {
+            (0..SLOTS)
+                .map(|slot| of(slot).iter().product::<f64>())
+                .sum()
+        };
+        let sheet = |slot: usize| above(window, slot, cell);
+        let products = dot(&|slot| [of_film(slot), sheet(slot)]);
+        let squares = dot(&|slot| [of_film(slot); 2]) * dot(&|slot| [sheet(slot); 2]);
+        let differs = 1.0
+            - if squares > 0.0 {
+                products / squares.sqrt()
+            } else {
+                0.0
+            };
+        let work = (reach, travel, differs);
+        let [from_top, from_body, kept, fits] = parted([top, lying - top], sides, work);
+        expected.sheets[0] += usize::from(top > 100.0 && from_top > 0.0 && from_body < 1e-9);
+        expected.sheets[1] += usize::from(top > 100.0 && from_top > 0.0 && from_body > 1e-6);
+        expected.sheets[2] += usize::from(several && top > 100.0 && kept < 0.9);
         for slot in 0..SLOTS {
-            let of_film = load
-                .film_of(slot)
-                .map_or(0.0, |film| f64::from(film[texel]));
-            let of_cell = on(window, slot, cell);
+            let of_film = of_film(slot);
+            let (of_cell, of_top) = (on(window, slot, cell), above(window, slot, cell));
             let to_canvas = given * granted * of_film / there.max(1.0);
-            let to_brush = taken * taken_in * of_cell / lying.max(1.0);
-            // Both the demand and the transfer are truncated; a sum of truncated demands lacks up to a quantum for each
+            let to_brush = from_top * of_top + from_body * (of_cell - of_top);
+            // The demand and the transfer from each sheet are truncated; a sum of truncated demands lacks up to a quantum for each
             // cell of the texel, and a film's free capacity changes with both. Single precision adds 10⁻⁶.
             let shared = |granted: f64, sum: f64, own: f64| {
                 let bound = (granted < 1.0).then(|| 2.0 * sharers / sum * own);
                 bound.unwrap_or_default()
             };
             let off = |moved: f64, shared: f64| {
-                let bound = (moved > 0.0).then_some(2.0 + shared + 4e-6 * moved);
+                let bound = (moved > 0.0).then_some(3.0 + shared + 4e-6 * moved);
                 bound.unwrap_or_default()
             };
             let bound = off(to_canvas, shared(granted, drawn, *given))
@@ -205,6 +283,12 @@ fn oracle(contacts: &[Contact], scene: &Scene, rule: Rule) -> Expected {
                 expected.cells.entry((slot, cell)).or_insert([of_cell, 0.0]),
                 onto,
             );
+            // Single precision tells mixtures that are nearly alike apart by 10⁻⁴.
+            let left = (of_top - from_top * of_top) * kept + to_canvas;
+            let upper = if several { left * fits } else { 0.0 };
+            expected
+                .uppers
+                .insert((slot, cell), [upper, bound + 2.0 + 2e-4 * upper]);
             let film = expected.films.entry((slot, texel));
             let film = film.or_insert([of_film, 0.0]);
             if !sponge {
@@ -223,7 +307,13 @@ fn agrees(scene: &Scene, expected: &Expected) -> bool {
     };
     let mut cells = expected.cells.iter();
     let mut films = expected.films.iter();
-    cells.all(|((slot, cell), want)| near(on(&scene.window, *slot, *cell), want))
+    let mut uppers = expected.uppers.iter();
+    let upper = |slot: usize, cell: usize| {
+        let upper = scene.window.upper(slot);
+        upper.map_or(0.0, |upper| f64::from(upper[cell]))
+    };
+    uppers.all(|((slot, cell), want)| near(upper(*slot, *cell), want))
+        && cells.all(|((slot, cell), want)| near(on(&scene.window, *slot, *cell), want))
         && films.all(|((slot, texel), want)| near(film(*slot, *texel), want))
 }
 
@@ -232,6 +322,21 @@ fn crowd(contacts: &mut [Contact]) {
     for contact in contacts {
         contact.texel %= 2;
         contact.moved = contact.moved.map(|cells| 8.0 * cells);
+    }
+}
+
+/// Puts a part of the paint of each cell in the upper sheet; of one cell in eight all, and more than there is.
+fn lay_on_top(scene: &mut Scene, seed: u64) {
+    let mut random = Random::new(seed + 900);
+    let cells = scene.window.width() * scene.window.height();
+    for cell in 0..cells {
+        let share = random.range(0.0, 1.15);
+        for slot in 0..SLOTS {
+            if scene.window.has(slot) {
+                let [plane, upper] = scene.window.sheets_mut(slot);
+                upper[cell] = (plane[cell] * share as f32).floor();
+            }
+        }
     }
 }
 
@@ -258,6 +363,10 @@ fn paint_goes_both_ways_as_algorithm_3_says() {
         let (kind, rule) = RULES[[0, 1, 0, 1, 2][seed / 8]];
         let file = BrushFile::library(kind).expect(kind);
         scene.traits.exchanging = BrushTraits::of(&file, CELL_M, 1.0).exchanging;
+        if seed % 5 != 4 {
+            lay_on_top(&mut scene, seed as u64);
+        }
+        scene.to.press = PRESS;
         let before = scene.counts();
         let expected = oracle(&footprint.contacts, &scene, rule);
         let kept = 0.99 * rule.kept;
@@ -288,6 +397,11 @@ fn paint_goes_both_ways_as_algorithm_3_says() {
         let fault = 10.0 * bound.ceil() as f32;
         scene.window.plane_mut(slot)[cell] += fault;
         assert!(!agrees(&scene, &expected), "a fault in scene {seed} passes");
+        scene.window.plane_mut(slot)[cell] -= fault;
+        let (&(slot, cell), [_, bound]) = expected.uppers.iter().next().expect("contacts");
+        let [_, upper] = scene.window.sheets_mut(slot);
+        upper[cell] += 10.0 * bound.ceil() as f32;
+        assert!(!agrees(&scene, &expected), "a fault in a sheet passes");
     }
     assert!(
         10 * told > 9 * by_shares,
@@ -300,6 +414,11 @@ fn paint_goes_both_ways_as_algorithm_3_says() {
         seen.uptakes
     );
     assert!(seen.swaps > 1000, "{}", seen.swaps);
+    assert!(
+        seen.sheets.iter().all(|count| *count > 200),
+        "{:?}",
+        seen.sheets
+    );
     assert!(
         seen.overdrawn > 20 && seen.overfilled > 20,
         "{} {}",

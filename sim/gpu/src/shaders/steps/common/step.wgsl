@@ -88,10 +88,12 @@ struct Step {
     seep_along: f32,
     // Quanta of a texel's film that cling to a strip.
     clings: f32,
-    // Number of parts in which paint moves, which the host dispatches.
-    parts: u32,
-    // Padding: records lie 256 bytes apart.
-    room: vec2<u32>,
+    // Cells over which a deposit is spread, in all but the lowest bit; 0 along x, 1 along y in that.
+    spread: u32,
+    // 1 where as many planes follow with what is in the upper sheet.
+    sheets: u32,
+    // Share of what bristles reach that they shear under this press.
+    shear: f32,
 }
 
 // A cell in contact.
@@ -128,7 +130,8 @@ const MARKER = 2u;
 @group(0) @binding(2) var<storage, read> head: array<u32>;
 // Segments as they are drawn, four vectors each.
 @group(0) @binding(3) var<storage, read_write> segments: array<vec4<f32>>;
-// Counts on the window's cells, a plane a paint; and an equal amount of scratch memory.
+// Counts on the window's cells, a plane a paint, then a plane a paint with what is in the upper sheet; and an equal
+// amount of scratch memory.
 @group(0) @binding(4) var<storage, read_write> planes: array<f32>;
 @group(0) @binding(5) var<storage, read_write> other: array<f32>;
 // Height of the surface that catches paint; height at which a pressed bristle rests on it.

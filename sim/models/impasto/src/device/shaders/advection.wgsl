@@ -102,13 +102,15 @@ fn advection(
             share *= min(1.0, room / max(coming, 1e-30));
         }
     }
+    // What is in the upper sheet moves with the rest.
+    let all = step.planes * (1u + step.sheets);
     var sum = 0.0;
     var turn = 0u;
-    for (var paint = 0u; paint < step.planes; paint += 4u) {
+    for (var paint = 0u; paint < all; paint += 4u) {
         var held = vec4(0.0);
         var flux = vec4(0.0);
         for (var k = 0u; k < 4u; k++) {
-            if inside && paint + k < step.planes {
+            if inside && paint + k < all {
                 held[k] = count(paint + k, row.cell[1]);
                 if v > 0.0 {
                     let after = count(paint + k, row.cell[2]);
@@ -127,8 +129,8 @@ fn advection(
             let came = through[turn + index - select(1u, COLUMNS, up)];
             let now = held + came - flux;
             for (var k = 0u; k < 4u; k++) {
-                if paint + k < step.planes {
-                    sum += now[k];
+                if paint + k < all {
+                    sum += select(0.0, now[k], paint + k < step.planes);
                     if second == 0u {
                         other[(paint + k) * step.plane + row.cell[1]] = now[k];
                     } else {

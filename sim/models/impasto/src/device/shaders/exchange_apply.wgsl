@@ -11,6 +11,91 @@ fn rounded(share: f32, asked: f32, there: f32) -> f32 {
     return share * select(LONG, SHORT, asked > NEXT_TO_ALL * there);
 }
 
+// Constants of sheets.rs and sides.rs.
+override SHEET: f32;
+override COVERS: f32;
+override LN_ON_TOP: f32;
+override TAKES: f32;
+
+// What goes between a contact's cell and its texel.
+struct Going {
+    // Quanta that come from the brush, and go to it.
+    quanta: vec2<f32>,
+    // Share of the texel's film that comes, and of the cell's paint that goes.
+    share: vec2<f32>,
+}
+
+fn going(i: u32, texel: u32) -> Going {
+    let film = f32(load[1u + texel]);
+    let drawn = f32(atomicLoad(&asks[texel]));
+    let offered = f32(atomicLoad(&asks[texels() + texel]));
+    var granted = vec2(1.0, 1.0);
+    if step.transfer == SPONGE {
+        granted.x = select(0.0, 1.0, film > 0.0);
+    } else {
+        granted.x = min(1.0, film / max(drawn, 1.0));
+        let room = step.film_most - film + drawn * granted.x;
+        granted.y = clamp(room / max(offered, 1.0), 0.0, 1.0);
+    }
+    let goes = wants[i] * granted;
+    let share = vec2(
+        rounded(goes.x / max(film, 1.0), drawn, film),
+        rounded(goes.y / max(totals[i], 1.0), goes.y, totals[i]),
+    );
+    return Going(goes, share);
+}
+
+// Cells to one side that get parts of a deposit along the step, and the share of one that is `off` cells away (Spread of
+// maulstick-model).
+fn reach_of_spread() -> u32 {
+    let fullest = bitcast<f32>(atomicLoad(&stats[stat(FULLEST)]));
+    let length = step.spread >> 1u;
+    return select(0u, length / 2u, length > 1u && fullest <= TAKES * step.cell_max);
+}
+
+fn part_at(off: u32) -> f32 {
+    let length = step.spread >> 1u;
+    return select(1.0, 0.5, length % 2u == 0u && off == length / 2u) / f32(length);
+}
+
+// The cells to both sides of a cell of the grid along the step, nearest first, up to 4; NONE where paint cannot move.
+fn beside(i: u32, reach: u32) -> array<u32, 8> {
+    var found: array<u32, 8>;
+    let around = around();
+    let low = vec2<i32>(around.low);
+    let high = vec2<i32>(around.high);
+    let at = vec2<i32>(vec2(i % step.width, i / step.width));
+    for (var n = 0u; n < 2u * reach; n++) {
+        let way = select(-1, 1, (n & 1u) == 1u) * i32(n / 2u + 1u);
+        let place = at + select(vec2(way, 0), vec2(0, way), (step.spread & 1u) == 1u);
+        let open = all(place >= low) && all(place < high);
+        found[n] = select(NONE, u32(place.y) * step.width + u32(place.x), open);
+    }
+    return found;
+}
+
+// Shares of the upper sheet and of the body that go to the brush, and the share of the rest of the upper sheet that does
+// not sink under `covered` quanta of other paint, and the share of that and the paint that comes which stays on top.
+fn parted(i: u32, top: f32, going: Going, leaves: f32, covered: f32) -> vec4<f32> {
+    let lying = totals[i];
+    let contact = contacts[i];
+    let goes = going.quanta;
+    let reach = max(step.shear * contact.fraction * lying, goes.y);
+    let over = top / max(reach, 1.0);
+    let off_top = min(goes.y * min(over, 1.0), top);
+    let body = lying - top;
+    let travel = length(contact.moved) * step.cell_per_reference;
+    let ploughed = LN_ON_TOP * travel * max(1.0 - over, 0.0);
+    let kept = decay(min(ploughed - covered / COVERS, 0.0));
+    let left = (top - leaves * off_top) * kept + goes.x;
+    return vec4(
+        rounded(off_top / max(top, 1.0), off_top, top),
+        rounded((goes.y - off_top) / max(body, 1.0), goes.y - off_top, body),
+        kept,
+        min(SHEET / max(left, 1.0), 1.0),
+    );
+}
+
 // Records the height of paint under the brush, and beside it.
 fn note_left(i: u32, total: f32) {
     let at = vec2(i % step.width, i / step.width);
@@ -29,47 +114,120 @@ fn exchange_apply(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let texel = contacts[i].texel;
-    if texel == NONE {
+    let touched = texel != NONE;
+    let reach = reach_of_spread();
+    if !touched && reach == 0u {
         note_left(i, totals[i]);
         return;
     }
-    let film = f32(load[1u + texel]);
-    let drawn = f32(atomicLoad(&asks[texel]));
-    let offered = f32(atomicLoad(&asks[texels() + texel]));
-    var granted = vec2(1.0, 1.0);
-    if step.transfer == SPONGE {
-        granted.x = select(0.0, 1.0, film > 0.0);
-    } else {
-        granted.x = min(1.0, film / max(drawn, 1.0));
-        let room = step.film_most - film + drawn * granted.x;
-        granted.y = clamp(room / max(offered, 1.0), 0.0, 1.0);
+    let layered = step.sheets != 0u;
+    let cell = cell_of(i % step.width, i / step.width);
+    // Its own deposit goes to the open sides; it gets those of the contacts among them.
+    let sides = beside(i, reach);
+    var texel_of: array<u32, 8>;
+    var share_of: array<f32, 8>;
+    var gets = false;
+    var covered = 0.0;
+    // Of paint that comes from beside only those kinds count that come onto a cell without a contact.
+    var comes_beside = NONE;
+    var open = 0.0;
+    for (var n = 0u; n < 2u * reach; n++) {
+        texel_of[n] = NONE;
+        if sides[n] == NONE {
+            continue;
+        }
+        let part = part_at(n / 2u + 1u);
+        open += part;
+        let giver = contacts[sides[n]].texel;
+        if giver == NONE {
+            continue;
+        }
+        gets = true;
+        let gives = going(sides[n], giver);
+        texel_of[n] = giver;
+        share_of[n] = gives.share.x;
+        if layered {
+            let note = faces[sides[n]];
+            covered += part * gives.quanta.x * note.x;
+            comes_beside = besides(comes_beside, bitcast<u32>(note.y));
+        }
     }
-    let goes = wants[i] * granted;
+    if !touched && !gets {
+        note_left(i, totals[i]);
+        return;
+    }
+    var own = Going(vec2(0.0), vec2(0.0));
+    var only = comes_beside;
+    if touched {
+        own = going(i, texel);
+        only = NONE;
+        if layered {
+            covered += (1.0 - open) * own.quanta.x * faces[i].x;
+            only = bitcast<u32>(faces[i].y);
+        }
+    }
     // Lasting paint loses only the amount that arrives.
     var leaves = 1.0;
-    if step.lasting != 0u && goes.y > goes.x {
-        leaves = goes.x / goes.y;
+    if step.lasting != 0u && own.quanta.y > own.quanta.x {
+        leaves = own.quanta.x / own.quanta.y;
     }
-    let share = vec2(
-        rounded(goes.x / max(film, 1.0), drawn, film),
-        rounded(goes.y / max(totals[i], 1.0), goes.y, totals[i]),
-    );
-    let cell = cell_of(i % step.width, i / step.width);
+    var sheets = vec4(0.0, own.share.y, 0.0, 0.0);
+    if layered {
+        var top = 0.0;
+        for (var paint = 0u; paint < step.planes; paint++) {
+            let there = planes[paint * step.plane + cell];
+            top += min(planes[upper_of(paint, cell)], there);
+            only = besides(only, select(NONE, paint, there > 0.0));
+        }
+        if touched {
+            sheets = parted(i, top, own, leaves, covered);
+        } else {
+            sheets = vec4(0.0, 0.0, decay(-covered / COVERS), 1.0);
+        }
+    }
+    let two = layered && only == SEVERAL;
     var sum = 0.0;
     for (var paint = 0u; paint < step.planes; paint++) {
         let at = paint * step.plane + cell;
         let there = planes[at];
-        let left = trunc(f32(load[film_of(paint) + texel]) * share.x);
-        let taken = min(trunc(there * share.y), there);
-        let now = there + left - trunc(leaves * taken);
-        sum += now;
-        if left != 0.0 || taken != 0.0 {
-            planes[at] = now;
-            if step.transfer != SPONGE {
-                // In two's complement a negative change is added as well.
-                let change = u32(i32(taken) - i32(left));
-                atomicAdd(&asks[change_of(paint) + texel], change);
+        var left = 0.0;
+        if touched {
+            left = trunc(f32(load[film_of(paint) + texel]) * own.share.x);
+        }
+        var sent = 0.0;
+        var came = 0.0;
+        for (var n = 0u; n < 2u * reach; n++) {
+            let part = part_at(n / 2u + 1u);
+            if sides[n] != NONE {
+                sent += trunc(left * part);
             }
+            if texel_of[n] != NONE {
+                let given = trunc(f32(load[film_of(paint) + texel_of[n]]) * share_of[n]);
+                came += trunc(given * part);
+            }
+        }
+        var above = 0.0;
+        if layered {
+            above = min(planes[upper_of(paint, cell)], there);
+        }
+        let off_top = min(trunc(above * sheets.x), above);
+        let taken = off_top + min(trunc((there - above) * sheets.y), there - above);
+        if layered {
+            let stays = trunc((above - trunc(leaves * off_top)) * sheets.z);
+            let upper = max(trunc((stays + left) * sheets.w) - sent, 0.0) + came;
+            if touched || two {
+                planes[upper_of(paint, cell)] = select(0.0, upper, two);
+            }
+        }
+        let now = there + left - sent + came - trunc(leaves * taken);
+        sum += now;
+        if left != 0.0 || taken != 0.0 || came != 0.0 {
+            planes[at] = now;
+        }
+        if touched && (left != 0.0 || taken != 0.0) && step.transfer != SPONGE {
+            // In two's complement a negative change is added as well.
+            let change = u32(i32(taken) - i32(left));
+            atomicAdd(&asks[change_of(paint) + texel], change);
         }
     }
     note_left(i, sum);

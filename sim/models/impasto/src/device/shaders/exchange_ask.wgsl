@@ -25,6 +25,22 @@ fn transfer(on_brush: f32, on_canvas: f32, lies: f32, gap: f32, share: f32, trav
     return fill + select(-amount, amount, difference > 0.0);
 }
 
+// Notes the only paint of a contact's texel, and how far its mixture is from that of the upper sheet: 1 less the cosine
+// of the angle between them.
+fn note_sheet(i: u32, texel: u32) {
+    let cell = cell_of(i % step.width, i / step.width);
+    var only = NONE;
+    // Sums of the squares of the texel's paints, of the sheet's, and of their products.
+    var sums = vec3(0.0);
+    for (var paint = 0u; paint < step.planes; paint++) {
+        let above = min(planes[upper_of(paint, cell)], planes[paint * step.plane + cell]);
+        let film = f32(load[film_of(paint) + texel]);
+        sums += vec3(film * film, above * above, film * above);
+        only = besides(only, select(NONE, paint, film > 0.0));
+    }
+    faces[i] = vec2(1.0 - sums.z / max(sqrt(sums.x * sums.y), 1.0), bitcast<f32>(only));
+}
+
 @compute @workgroup_size(256)
 fn exchange_ask(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = id.x;
@@ -39,7 +55,7 @@ fn exchange_ask(@builtin(global_invocation_id) id: vec3<u32>) {
     let travel = length(contact.moved) * step.cell_per_reference;
     let on_brush = f32(load[1u + contact.texel]) * step.film_units_per_quantum;
     let lies = lying / QUANTA_PER_UNIT;
-    let on_canvas = lies * contact.fraction;
+    let on_canvas = lies * step.shear * contact.fraction;
     let gap = max(-contact.reach, 0.0) / (step.cells_per_quantum * QUANTA_PER_UNIT);
     var net = step.flow * travel;
     var swap = 0.0;
@@ -58,6 +74,9 @@ fn exchange_ask(@builtin(global_invocation_id) id: vec3<u32>) {
     let to_canvas = trunc(min(max(net, 0.0) * quanta + swap, room));
     let to_brush = trunc(min(max(-net, 0.0) * quanta + swap, lying));
     wants[i] = vec2(to_canvas, to_brush);
+    if step.sheets != 0u {
+        note_sheet(i, contact.texel);
+    }
     atomicAdd(&asks[contact.texel], u32(to_canvas));
     atomicAdd(&asks[texels() + contact.texel], u32(to_brush));
     atomicStore(&asks[touch_of(contact.texel / TEXELS_PER_STRIP)], 1u);

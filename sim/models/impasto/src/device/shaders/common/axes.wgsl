@@ -3,3 +3,19 @@
 fn along_y(second: u32, steps: u32) -> bool {
     return (second + steps) % 2u == 1u;
 }
+
+// The paints of a cell or a texel in one word: NONE, the only one, or SEVERAL.
+const SEVERAL = NONE - 1u;
+
+// The paint that is there besides another.
+fn besides(one: u32, other: u32) -> u32 {
+    if other == NONE {
+        return one;
+    }
+    return select(SEVERAL, other, one == NONE || one == other);
+}
+
+// What of a paint is in the upper sheet of a cell.
+fn upper_of(paint: u32, cell: u32) -> u32 {
+    return (step.planes + paint) * step.plane + cell;
+}
