@@ -54,7 +54,7 @@ impl Spread {
     #[must_use]
     pub fn share(self, off: usize) -> f32 {
         // An even number of cells ends in the middle of two.
-        let halves = self.cells % 2 == 0 && off == self.reach();
+        let halves = self.cells % 2 == 0 && off == self.reach() && off > 0;
         let part = 1.0 / self.cells.max(1) as f32;
         if halves { 0.5 * part } else { part }
     }

@@ -8,8 +8,9 @@ mod granted;
 mod meeting;
 
 use maulstick_canvas::quantum::SLOTS;
+use maulstick_canvas::window::Window;
 use maulstick_num::fork_join::{Balance, each};
-use maulstick_num::select::{larger, smaller};
+use maulstick_num::select::smaller;
 use maulstick_num::wide;
 use std::ops::Range;
 
@@ -146,7 +147,7 @@ impl Exchange {
             share.share(granted, lasting);
             share.weigh(shared, on_texels);
         });
-        let spreads = self.sides.find(footprint, step);
+        let spreads = self.sides.begin(footprint, step);
         if spreads && layered {
             let covers = used.iter().flat_map(|share| share.covers(granted));
             self.sides.cover(covers);
@@ -256,7 +257,7 @@ impl Exchange {
                 self.sides.sink(upper);
             }
             if on_brush {
-                self.spread(slot, step);
+                self.spread(slot, step.window);
             }
         }
         // Counted paint: one side gains what the other loses.
@@ -273,35 +274,13 @@ impl Exchange {
     }
 
     /// Spreads one paint that was given along the step.
-    fn spread(&self, slot: usize, step: &mut Step<'_>) {
+    fn spread(&mut self, slot: usize, window: &mut Window) {
         let gives = &self.gives;
-        let given = self.in_use().iter().flat_map(|share| {
+        let given = self.shares[..self.used].iter().flat_map(|share| {
             let wants = share.wants[0].iter().zip(&share.places);
-            let given = wants.map(|(given, place)| (given * gives[*place as usize]).floor());
-            share.cells.iter().zip(given)
+            wants.map(|(given, place)| (given * gives[*place as usize]).floor())
         });
-        let parts = || {
-            let given = given.clone().enumerate();
-            given.flat_map(|(contact, (cell, given))| {
-                self.sides.parts(contact, *cell as usize, given)
-            })
-        };
-        let plane = step.window.plane_mut(slot);
-        for part in parts() {
-            plane[part.cells[0]] -= part.quanta;
-            plane[part.cells[1]] += part.quanta;
-        }
-        if !step.window.has_sheets() {
-            return;
-        }
-        let [_, upper] = step.window.sheets_mut(slot);
-        for part in parts().filter(|part| part.layered[0]) {
-            let above = &mut upper[part.cells[0]];
-            *above = larger(*above - part.quanta, 0.0);
-        }
-        for part in parts().filter(|part| part.layered[1]) {
-            upper[part.cells[1]] += part.quanta;
-        }
+        self.sides.spread_paint((window, slot), given);
     }
 
     /// Quanta of a plane on the contacts.

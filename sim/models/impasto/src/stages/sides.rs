@@ -1,14 +1,17 @@
-//! Deposit along a step, as [`Spread`] has it: what contacts give to the cells beside theirs.
+//! Deposit along a step, as [`Spread`] has it: what contacts give to the cells beside theirs, as far as their bristles
+//! touch these, too.
 
 use maulstick_canvas::quantum::CELL_MAX;
-use maulstick_canvas::window::Window;
+use maulstick_canvas::window::{Area, Window};
 use maulstick_model::footprint::Footprint;
 use maulstick_model::interface::Step;
 use maulstick_model::spread::Spread;
+use maulstick_num::select::larger;
+use maulstick_num::wide;
 
 use super::sheets::{NONE, SEVERAL, besides, left_under, only_on};
 
-/// Share of its capacity up to which a cell takes parts of its neighbours' deposits.
+/// Share of its capacity up to which cells take parts of their neighbours' deposits.
 pub const TAKES: f32 = 0.25;
 
 /// What is known of the sheets of a cell.
@@ -16,65 +19,143 @@ pub const TAKES: f32 = 0.25;
 enum Layered {
     /// It is beside the contacts, and has this only paint so far.
     Beside(u8),
-    /// A contact's, of one paint.
-    One,
-    /// Two may lie.
+    /// It is a contact's.
+    Touched,
+    /// It is beside the contacts, and two sheets may lie.
     Two,
 }
 
-/// The cells beside the contacts, along the step.
+/// Deposits on the cells around the contacts, row after row.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sides {
     spread: Spread,
-    /// Offset to the next cell along the step, in the window and around the contacts.
-    next: [usize; 2],
-    /// For each contact its place around the contacts, and a bit for each side at each distance where there is a cell.
-    places: Vec<(u32, u8)>,
-    /// What is known of the sheets on the cells around the contacts.
+    around: Area,
+    /// Place of each contact.
+    places: Vec<u32>,
+    /// Height that a cell shows to bristles from beside, all of it where it is touched, and the height beside a contact
+    /// from which its bristles touch, cells.
+    heights: [Vec<f32>; 2],
     layered: Vec<Layered>,
-    /// Quanta that come over their upper sheets, of other paint.
+    /// 1 where two sheets may lie.
+    two: Vec<f32>,
+    /// Quanta that come over the upper sheets, of other paint.
     covered: Vec<f32>,
-    /// The cells among them that are no contacts, in the window.
+    /// The cells beside the contacts where two sheets may lie, in the window and here.
     beside: Vec<(usize, usize)>,
+    /// Quanta of a deposit where the contacts are, quanta that leave each cell and those that come to it.
+    given: Vec<f32>,
+    moved: [Vec<f32>; 2],
 }
 
-/// A part of a deposit: the cell that gives it and the one that takes it, in the window and around the contacts.
-pub(crate) struct Part {
-    pub quanta: f32,
-    pub cells: [usize; 2],
-    pub layered: [bool; 2],
+wide! {
+    /// Parts of what is given at each cell: those that leave, and those that come.
+    fn share_out(
+        given: &[f32],
+        heights: &[Vec<f32>; 2],
+        moved: &mut [Vec<f32>; 2],
+        size: [usize; 2],
+        spread: Spread,
+    ) {
+        let [sent, came] = moved;
+        let count = given.len();
+        let (shows, from) = (&heights[0][..count], &heights[1][..count]);
+        for plane in [&mut *sent, &mut *came] {
+            plane.clear();
+            plane.resize(given.len(), 0.0);
+        }
+        // Rows of one column are one row.
+        let (rows, next) = match spread.axis {
+            0 => (size[1], 1),
+            _ => (1, size[0]),
+        };
+        let length = given.len() / rows.max(1);
+        for off in 1..=spread.reach() {
+            let (share, off) = (spread.share(off), off * next);
+            let inner = length.saturating_sub(off);
+            for row in (0..rows).map(|row| row * length) {
+                let (low, high) = (row..row + inner, row + off..row + off + inner);
+                for i in 0..inner {
+                    let open = shows[high.start + i] > from[low.start + i];
+                    let part = if open { (given[low.start + i] * share).floor() } else { 0.0 };
+                    sent[low.start + i] += part;
+                    came[high.start + i] += part;
+                }
+                for i in 0..inner {
+                    let open = shows[low.start + i] > from[high.start + i];
+                    let part = if open { (given[high.start + i] * share).floor() } else { 0.0 };
+                    sent[high.start + i] += part;
+                    came[low.start + i] += part;
+                }
+            }
+        }
+    }
+}
+
+wide! {
+    /// Moves what left and came, in the rows of a plane and of what of it is in the upper sheet.
+    fn take(moved: [&[f32]; 2], two: &[f32], plane: &mut [f32], upper: Option<&mut [f32]>) {
+        let [sent, came] = moved;
+        let count = plane.len();
+        let (sent, came, two) = (&sent[..count], &came[..count], &two[..count]);
+        for i in 0..count {
+            plane[i] += came[i] - sent[i];
+        }
+        if let Some(upper) = upper {
+            let upper = &mut upper[..count];
+            for i in 0..count {
+                upper[i] = larger(upper[i] - two[i] * sent[i], 0.0) + two[i] * came[i];
+            }
+        }
+    }
 }
 
 impl Sides {
-    /// Finds the cells beside the contacts; true if there are any.
-    pub(crate) fn find(&mut self, footprint: &Footprint, step: &Step<'_>) -> bool {
+    /// Begins a step; true if its deposits are spread.
+    pub(crate) fn begin(&mut self, footprint: &Footprint, step: &Step<'_>) -> bool {
         self.spread = Spread::of(step);
-        let reach = self.spread.reach();
-        if reach == 0 || footprint.fullest() > TAKES * CELL_MAX as f32 {
+        if self.spread.reach() == 0 || footprint.fullest() > TAKES * CELL_MAX as f32 {
             self.spread = Spread::default();
             return false;
         }
-        let (size, axis) = (footprint.around.size, self.spread.axis as usize);
-        self.next = [[1, step.window.width()][axis], [1, size[0]][axis]];
+        self.around = footprint.around;
+        let places = footprint.contacts.iter().map(|contact| contact.local);
         self.places.clear();
-        self.places.extend(footprint.contacts.iter().map(|contact| {
-            let place = [
-                contact.local as usize % size[0],
-                contact.local as usize / size[0],
-            ][axis];
-            let open = (1..=reach).fold(0, |open, off| {
-                let both = u8::from(place >= off) | u8::from(place + off < size[axis]) << 1;
-                open | both << (2 * (off - 1))
-            });
-            (contact.local, open)
-        }));
+        self.places.extend(places);
+        let cells = self.around.cells();
+        for plane in [&mut self.given, &mut self.two] {
+            plane.clear();
+            plane.resize(cells, 0.0);
+        }
         self.layered.clear();
-        self.layered
-            .resize(footprint.around.cells(), Layered::Beside(NONE));
-        self.covered.clear();
-        self.covered.resize(footprint.around.cells(), 0.0);
         self.beside.clear();
+        self.measure(footprint, step);
         true
+    }
+
+    /// Measures how high the cells are, and from where on the bristles touch.
+    fn measure(&mut self, footprint: &Footprint, step: &Step<'_>) {
+        const TOUCHED: f32 = 1e9;
+        let (window, traits) = (&*step.window, &step.traits);
+        let [shows, from] = &mut self.heights;
+        shows.resize(self.around.cells(), 0.0);
+        window.weigh(&self.around, shows);
+        let rows = self.around.rows(window.width());
+        for (shows, row) in shows.chunks_exact_mut(self.around.size[0].max(1)).zip(rows) {
+            for (height, base) in shows.iter_mut().zip(&window.base()[row]) {
+                *height = base + *height * traits.cells_per_quantum;
+            }
+        }
+        from.clear();
+        from.resize(self.around.cells(), 0.0);
+        for contact in &footprint.contacts {
+            let place = contact.local as usize;
+            let film =
+                step.load.film(contact.texel as usize) as f32 * traits.film_cells_per_quantum;
+            from[place] = shows[place] - contact.depth + contact.gap - film;
+        }
+        for contact in &footprint.contacts {
+            shows[contact.local as usize] = TOUCHED;
+        }
     }
 
     /// True if deposits are spread in this step.
@@ -82,23 +163,36 @@ impl Sides {
         self.spread.reach() > 0
     }
 
+    /// Spreads what the contacts give, in their order.
+    fn spread(&mut self, given: impl Iterator<Item = f32>) {
+        for (place, given) in self.places.iter().zip(given) {
+            self.given[*place as usize] = given;
+        }
+        let size = self.around.size;
+        share_out(
+            &self.given,
+            &self.heights,
+            &mut self.moved,
+            size,
+            self.spread,
+        );
+    }
+
     /// Covers upper sheets: by contact, the quanta that come of a mixture that is not that of the sheet.
     pub(crate) fn cover(&mut self, contacts: impl Iterator<Item = f32>) {
-        for ((local, open), quanta) in self.places.iter().zip(contacts) {
-            let local = *local as usize;
-            let mut rest = quanta;
-            for side in self.sides(*open) {
-                let part = quanta * self.spread.share(side.off);
-                rest -= part;
-                self.covered[side.of([0, local], self.next)[1]] += part;
-            }
-            self.covered[local] += rest;
-        }
+        self.spread(contacts);
+        let [sent, came] = &self.moved;
+        let stays = self.given.iter().zip(sent);
+        let covered = stays
+            .zip(came)
+            .map(|((given, sent), came)| given - sent + came);
+        self.covered.clear();
+        self.covered.extend(covered);
     }
 
     /// Quanta that come over the upper sheet of a contact, of other paint.
     pub(crate) fn covered(&self, contact: usize) -> f32 {
-        self.covered[self.places[contact].0 as usize]
+        self.covered[self.places[contact] as usize]
     }
 
     /// Notes where two sheets may lie, by the cell of each contact in the window, whether two may lie there, and the
@@ -108,84 +202,74 @@ impl Sides {
         window: &Window,
         contacts: impl Iterator<Item = (usize, bool, u8)> + Clone,
     ) {
-        for ((local, _), (_, is_layered, _)) in self.places.iter().zip(contacts.clone()) {
-            let known = [Layered::One, Layered::Two][usize::from(is_layered)];
-            self.layered[*local as usize] = known;
+        self.layered
+            .resize(self.around.cells(), Layered::Beside(NONE));
+        for (place, (_, two, _)) in self.places.iter().zip(contacts.clone()) {
+            let place = *place as usize;
+            self.layered[place] = Layered::Touched;
+            self.two[place] = f32::from(u8::from(two));
         }
-        for ((local, open), (cell, _, on_texel)) in self.places.iter().zip(contacts) {
-            for side in self.sides(*open) {
-                let [cell, local] = side.of([cell, *local as usize], self.next);
-                let Layered::Beside(so_far) = self.layered[local] else {
+        let axis = self.spread.axis as usize;
+        let (size, width) = (self.around.size, window.width());
+        let next = [[1, width][axis], [1, size[0]][axis]];
+        for (place, (cell, _, on_texel)) in self.places.iter().zip(contacts) {
+            let local = *place as usize;
+            let at = [local % size[0], local / size[0]][axis];
+            let reach = self.spread.reach();
+            let behind =
+                (1..=reach.min(at)).map(|off| [cell - off * next[0], local - off * next[1]]);
+            let ahead = (1..=reach.min(size[axis] - 1 - at))
+                .map(|off| [cell + off * next[0], local + off * next[1]]);
+            let [shows, from] = &self.heights;
+            for [cell, beside] in behind.chain(ahead) {
+                let Layered::Beside(so_far) = self.layered[beside] else {
                     continue;
                 };
+                if shows[beside] <= from[local] {
+                    continue;
+                }
                 let there = if so_far == NONE {
                     only_on(window, cell)
                 } else {
                     so_far
                 };
                 let only = besides(there, on_texel);
-                self.layered[local] = Layered::Beside(only);
+                self.layered[beside] = Layered::Beside(only);
                 if only == SEVERAL {
-                    self.layered[local] = Layered::Two;
-                    self.beside.push((cell, local));
+                    self.layered[beside] = Layered::Two;
+                    self.two[beside] = 1.0;
+                    self.beside.push((cell, beside));
                 }
             }
         }
     }
 
-    /// Lets the upper sheet beside the contacts sink as other paint comes over it; by cell of the window.
+    /// Lets the upper sheet of a paint beside the contacts sink as other paint comes over it.
     pub(crate) fn sink(&self, upper: &mut [f32]) {
         for (cell, local) in &self.beside {
             upper[*cell] = (upper[*cell] * left_under(self.covered[*local])).floor();
         }
     }
 
-    /// The parts of a deposit of `given` quanta by the contact with this number, on this cell of the window.
-    pub(crate) fn parts(
-        &self,
-        contact: usize,
-        cell: usize,
-        given: f32,
-    ) -> impl Iterator<Item = Part> {
-        let (local, open) = self.places[contact];
-        let from = [cell, local as usize];
-        self.sides(open).filter_map(move |side| {
-            let quanta = (given * self.spread.share(side.off)).floor();
-            let to = side.of(from, self.next);
-            (quanta >= 1.0).then(|| Part {
-                quanta,
-                cells: [from[0], to[0]],
-                layered: [from[1], to[1]].map(|at| self.layered[at] == Layered::Two),
-            })
-        })
-    }
-
-    /// The open sides of a contact.
-    fn sides(&self, open: u8) -> impl Iterator<Item = Side> + use<> {
-        let sides = (1..=self.spread.reach()).flat_map(|off| [(off, false), (off, true)]);
-        let sides = sides
-            .enumerate()
-            .filter(move |(bit, _)| open >> bit & 1 == 1);
-        sides.map(|(_, (off, ahead))| Side { off, ahead })
-    }
-}
-
-/// A cell beside another.
-struct Side {
-    off: usize,
-    ahead: bool,
-}
-
-impl Side {
-    /// Its places by those of the other, and by the offsets to the next cell.
-    fn of(&self, from: [usize; 2], next: [usize; 2]) -> [usize; 2] {
-        [0, 1].map(|i| {
-            let off = self.off * next[i];
-            if self.ahead {
-                from[i] + off
-            } else {
-                from[i] - off
-            }
-        })
+    /// Spreads a paint, by what the contacts have given their cells.
+    pub(crate) fn spread_paint(
+        &mut self,
+        (window, slot): (&mut Window, usize),
+        given: impl Iterator<Item = f32>,
+    ) {
+        self.spread(given);
+        let (layered, width) = (window.has_sheets(), window.width());
+        let (plane, mut upper) = if layered {
+            let [plane, upper] = window.sheets_mut(slot);
+            (plane, Some(upper))
+        } else {
+            (window.plane_mut(slot), None)
+        };
+        for (row, cells) in self.around.rows(width).enumerate() {
+            let here = row * cells.len()..(row + 1) * cells.len();
+            let moved = self.moved.each_ref().map(|plane| &plane[here.clone()]);
+            let upper = upper.as_mut().map(|upper| &mut upper[cells.clone()]);
+            take(moved, &self.two[here.clone()], &mut plane[cells], upper);
+        }
     }
 }

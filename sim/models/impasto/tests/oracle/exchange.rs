@@ -17,7 +17,7 @@ use crate::scene::{CELL_M, Random, Scene, lying};
 /// Exchange rule of a head: the share kept along a reference cell, whether it is a blade, and the share of a
 /// skin that is swapped along a reference cell without a gap.
 #[derive(Clone, Copy)]
-struct Rule {
+pub(crate) struct Rule {
     kept: f64,
     blade: bool,
     /// Most that goes over along a reference cell, m.
@@ -28,10 +28,10 @@ struct Rule {
 }
 
 /// Press of the heads, and its share of the shear of bristles: these shear fully from .45 on, and less by the square.
-const PRESS: f32 = 0.3;
+pub(crate) const PRESS: f32 = 0.3;
 const LIGHT: f64 = 4.0 / 9.0;
 
-const RULES: [(&str, Rule); 3] = [
+pub(crate) const RULES: [(&str, Rule); 3] = [
     (
         "round",
         Rule {
@@ -87,7 +87,9 @@ fn algorithm_3([a_b, a_c, lies, gap]: [f64; 4], travel: f64, rule: Rule) -> f64 
 
 /// Expected paint on cells and films, with tolerances in quanta.
 #[derive(Default)]
-struct Expected {
+pub(crate) struct Expected {
+    /// Quanta that a contact gives to its cell, by slot and contact.
+    pub(crate) given: BTreeMap<(usize, usize), [f64; 2]>,
     cells: BTreeMap<(usize, usize), [f64; 2]>,
     films: BTreeMap<(usize, usize), [f64; 2]>,
     uppers: BTreeMap<(usize, usize), [f64; 2]>,
@@ -114,12 +116,12 @@ impl Expected {
     }
 }
 
-fn film(load: &BrushLoad, texel: usize) -> f64 {
+pub(crate) fn film(load: &BrushLoad, texel: usize) -> f64 {
     let films = (0..SLOTS).filter_map(|slot| load.film_of(slot));
     films.map(|film| f64::from(film[texel])).sum()
 }
 
-fn on(window: &Window, slot: usize, cell: usize) -> f64 {
+pub(crate) fn on(window: &Window, slot: usize, cell: usize) -> f64 {
     let plane = window.planes().find(|(of, _)| *of == slot);
     plane.map_or(0.0, |(_, plane)| f64::from(plane[cell]))
 }
@@ -195,7 +197,7 @@ fn wants(
     ]
 }
 
-fn oracle(contacts: &[Contact], scene: &Scene, rule: Rule) -> Expected {
+pub(crate) fn oracle(contacts: &[Contact], scene: &Scene, rule: Rule) -> Expected {
     let (window, load, traits) = (&scene.window, &scene.load, &scene.traits);
     let sponge = scene.handling.transfer == Transfer::Sponge;
     let wants: Vec<[f64; 2]> = contacts
@@ -211,7 +213,7 @@ fn oracle(contacts: &[Contact], scene: &Scene, rule: Rule) -> Expected {
         sums[2] += 1.0;
     }
     let mut expected = Expected::default();
-    for (c, [given, taken]) in contacts.iter().zip(&wants) {
+    for (number, (c, [given, taken])) in contacts.iter().zip(&wants).enumerate() {
         let (cell, texel) = (c.cell as usize, c.texel as usize);
         let [drawn, offered, sharers] = demand[&c.texel];
         let there = film(load, texel);
@@ -274,8 +276,9 @@ fn oracle(contacts: &[Contact], scene: &Scene, rule: Rule) -> Expected {
                 let bound = (moved > 0.0).then_some(3.0 + shared + 4e-6 * moved);
                 bound.unwrap_or_default()
             };
-            let bound = off(to_canvas, shared(granted, drawn, *given))
-                + off(to_brush, shared(taken_in, offered, *taken));
+            let of_given = off(to_canvas, shared(granted, drawn, *given));
+            expected.given.insert((slot, number), [to_canvas, of_given]);
+            let bound = of_given + off(to_brush, shared(taken_in, offered, *taken));
             let put =
                 |to: &mut [f64; 2], moved: f64| (to[0], to[1]) = (to[0] + moved, to[1] + bound);
             let onto = to_canvas - to_brush;

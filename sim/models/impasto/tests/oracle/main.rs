@@ -10,5 +10,6 @@ mod ride;
 mod scene;
 mod seep;
 mod skin;
+mod spread;
 mod stroke;
 mod velocity;

@@ -58,6 +58,21 @@ fn part_at(off: u32) -> f32 {
     return select(1.0, 0.5, length % 2u == 0u && off == length / 2u) / f32(length);
 }
 
+// Height of the paint on a cell, cells.
+fn top_of(i: u32) -> f32 {
+    return totals[2u * cells() + i] + totals[i] * step.cells_per_quantum;
+}
+
+// True if the bristles on a contact's cell touch another, too.
+fn gives(giver: u32, taker: u32) -> bool {
+    let contact = contacts[giver];
+    if contact.texel == NONE || contacts[taker].texel != NONE {
+        return contact.texel != NONE;
+    }
+    let film = f32(load[1u + contact.texel]) * step.film_cells_per_quantum;
+    return top_of(taker) > top_of(giver) - contact.reach - film;
+}
+
 // The cells to both sides of a cell of the grid along the step, nearest first, up to 4; NONE where paint cannot move.
 fn beside(i: u32, reach: u32) -> array<u32, 8> {
     var found: array<u32, 8>;
@@ -123,7 +138,7 @@ fn exchange_apply(@builtin(global_invocation_id) id: vec3<u32>) {
     let layered = step.sheets != 0u;
     let cell = cell_of(i % step.width, i / step.width);
     // Its own deposit goes to the open sides; it gets those of the contacts among them.
-    let sides = beside(i, reach);
+    var sides = beside(i, reach);
     var texel_of: array<u32, 8>;
     var share_of: array<f32, 8>;
     var gets = false;
@@ -137,18 +152,24 @@ fn exchange_apply(@builtin(global_invocation_id) id: vec3<u32>) {
             continue;
         }
         let part = part_at(n / 2u + 1u);
-        open += part;
-        let giver = contacts[sides[n]].texel;
-        if giver == NONE {
+        let opens = gives(i, sides[n]);
+        open += select(0.0, part, opens);
+        let giver_at = sides[n];
+        let giver = contacts[giver_at].texel;
+        let got = gives(giver_at, i);
+        if !opens {
+            sides[n] = NONE;
+        }
+        if !got {
             continue;
         }
         gets = true;
-        let gives = going(sides[n], giver);
+        let came = going(giver_at, giver);
         texel_of[n] = giver;
-        share_of[n] = gives.share.x;
+        share_of[n] = came.share.x;
         if layered {
-            let note = faces[sides[n]];
-            covered += part * gives.quanta.x * note.x;
+            let note = faces[giver_at];
+            covered += part * came.quanta.x * note.x;
             comes_beside = besides(comes_beside, bitcast<u32>(note.y));
         }
     }

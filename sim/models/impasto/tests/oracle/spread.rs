@@ -1,0 +1,148 @@
+//! What a contact gives is spread evenly along a step of several cells, over cells that its bristles touch, too.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use maulstick_canvas::quantum::SLOTS;
+use maulstick_impasto::stages::exchange::Exchange;
+use maulstick_model::footprint::Footprint;
+
+use crate::exchange::{Expected, PRESS, RULES, film, on, oracle};
+use crate::scene::Scene;
+
+/// Shares of a bar of `length` cells on the cells beside its middle.
+fn bar(length: usize) -> Vec<f64> {
+    let half = length as f64 / 2.0;
+    let overlap = |off: usize| {
+        let [from, to] = [off as f64 - 0.5, off as f64 + 0.5];
+        (to.min(half) - from.max(-half)).max(0.0) / length as f64
+    };
+    (1..=length / 2).map(overlap).collect()
+}
+
+/// A cell's change: quanta that leave, quanta that come, and their tolerance.
+type Changes = BTreeMap<(usize, usize), [f64; 3]>;
+
+/// Changes by a spread over `length` cells of what is given, by slot and cell; and the kinds of paint that come to each
+/// cell.
+fn spread(
+    footprint: &Footprint,
+    scene: &Scene,
+    expected: &Expected,
+    length: usize,
+) -> (Changes, BTreeMap<usize, BTreeSet<usize>>) {
+    let (window, traits) = (&scene.window, &scene.traits);
+    let (mut changes, mut kinds) = (Changes::new(), BTreeMap::new());
+    let way = |from: &[f32], to: &[f32]| -> f32 { to.iter().zip(from).map(|(b, a)| b - a).sum() };
+    let (from, to) = (&scene.from, &scene.to);
+    let is_up = way(&from.y, &to.y).abs() > way(&from.x, &to.x).abs();
+    let touched: BTreeSet<usize> = footprint.contacts.iter().map(|c| c.cell as usize).collect();
+    let top = |cell: usize| window.base()[cell] + window.total(cell) * traits.cells_per_quantum;
+    let around = footprint.around;
+    for (number, c) in footprint.contacts.iter().enumerate() {
+        let cell = c.cell as usize;
+        let at = [cell % window.width(), cell / window.width()];
+        let films = film(&scene.load, c.texel as usize) as f32 * traits.film_cells_per_quantum;
+        let bottom = top(cell) - c.depth + c.gap - films;
+        for (place, share) in bar(length).into_iter().enumerate() {
+            for way in [-1, 1] {
+                let mut to = at;
+                let off = way * (place as isize + 1);
+                let axis = usize::from(is_up);
+                let Some(moved) = to[axis].checked_add_signed(off) else {
+                    continue;
+                };
+                to[axis] = moved;
+                if moved < around.from[axis] || moved >= around.from[axis] + around.size[axis] {
+                    continue;
+                }
+                let beside = to[1] * window.width() + to[0];
+                if !touched.contains(&beside) && top(beside) <= bottom {
+                    continue;
+                }
+                for slot in 0..SLOTS {
+                    let [given, bound] = expected.given[&(slot, number)];
+                    let part = given * share;
+                    let mut put = |cell: usize, parts: [f64; 2]| {
+                        let change = changes.entry((slot, cell)).or_insert([0.0; 3]);
+                        change[0] += parts[0];
+                        change[1] += parts[1];
+                        change[2] += if given > 0.0 { 1.0 + bound } else { 0.0 };
+                    };
+                    put(cell, [part, 0.0]);
+                    put(beside, [0.0, part]);
+                    let texel = scene.load.film_of(slot);
+                    if texel.is_some_and(|film| film[c.texel as usize] > 0) {
+                        let come: &mut BTreeSet<usize> = kinds.entry(beside).or_default();
+                        come.insert(slot);
+                    }
+                }
+            }
+        }
+    }
+    (changes, kinds)
+}
+
+#[test]
+fn deposits_are_spread_along_the_step() {
+    let (mut beside, mut inside, mut told) = (0, 0, 0);
+    for seed in 0..24 {
+        let scene = |cells: f32| {
+            let mut scene = Scene::new(seed);
+            scene.to.press = PRESS;
+            scene.traits.step_cells = cells;
+            scene
+        };
+        let length = 2 + seed as usize % 4;
+        let (mut alone, mut long) = (scene(1.0), scene(length as f32));
+        let mut footprint = Footprint::default();
+        footprint.find(&mut alone.step());
+        footprint.find(&mut long.step());
+        let expected = oracle(&footprint.contacts, &long, RULES[0].1);
+        let (changes, kinds) = spread(&footprint, &long, &expected, length);
+        let (other, _) = spread(&footprint, &long, &expected, length + 2);
+        let before = scene(1.0);
+        let counts = before.counts();
+        for scene in [&mut alone, &mut long] {
+            Exchange::default().run(&footprint, &mut scene.step());
+            assert_eq!(scene.counts(), counts, "scene {seed}");
+        }
+        assert!(alone.load == long.load, "the brush gives as much");
+        let touched: BTreeSet<usize> = footprint.contacts.iter().map(|c| c.cell as usize).collect();
+        let off = |changes: &Changes, slot: usize, cell: usize| {
+            let [sent, came, bound] = changes.get(&(slot, cell)).copied().unwrap_or_default();
+            let want = on(&alone.window, slot, cell) + came - sent;
+            ((on(&long.window, slot, cell) - want).abs(), bound)
+        };
+        for slot in 0..SLOTS {
+            for cell in 0..long.window.width() * long.window.height() {
+                let (off, bound) = off(&changes, slot, cell);
+                assert!(off <= bound, "scene {seed}, cell {cell}: {off} of {bound}");
+                beside += usize::from(bound > 0.0 && !touched.contains(&cell));
+                inside += usize::from(bound > 0.0 && touched.contains(&cell));
+            }
+        }
+        told += usize::from(changes.keys().any(|(slot, cell)| {
+            let (off, bound) = off(&other, *slot, *cell);
+            off > bound
+        }));
+        // What comes to a cell without another paint makes no sheet, elsewhere it lies on top.
+        for (cell, come) in kinds.iter().filter(|(cell, _)| !touched.contains(*cell)) {
+            let lay = (0..SLOTS).filter(|slot| on(&before.window, *slot, *cell) > 0.0);
+            let all: BTreeSet<usize> = lay.chain(come.iter().copied()).collect();
+            for slot in come {
+                let [_, came, bound] = changes[&(*slot, *cell)];
+                let want = if all.len() > 1 { came } else { 0.0 };
+                let upper = long
+                    .window
+                    .upper(*slot)
+                    .map_or(0.0, |upper| f64::from(upper[*cell]));
+                assert!(
+                    (upper - want).abs() <= bound,
+                    "scene {seed}, cell {cell}: {upper} {want}"
+                );
+            }
+        }
+    }
+    assert!(beside > 500 && inside > 5000, "{beside} {inside}");
+    assert_eq!(told, 24, "another length passes");
+}
