@@ -26,6 +26,8 @@ pub struct Window {
     width: usize,
     height: usize,
     limit: [usize; 2],
+    /// True where the surface ends: left and right, below and above.
+    borders: [[bool; 2]; 2],
     wet: [Option<Vec<f32>>; SLOTS],
     /// What of it is in the upper sheet.
     upper: [Option<Vec<f32>>; SLOTS],
@@ -50,11 +52,14 @@ impl Window {
         let [width, height] = rect.cells();
         let tiles = rect.tiles().count();
         let surface = store.cells().map(|cells| cells as usize);
+        let left = [0, 1].map(|i| surface[i] - rect.from[i] as usize * TILE);
+        let limit = [0, 1].map(|i| rect.cells()[i].min(left[i]));
         let mut window = Self {
             rect,
             width,
             height,
-            limit: [0, 1].map(|i| rect.cells()[i].min(surface[i] - rect.from[i] as usize * TILE)),
+            limit,
+            borders: [0, 1].map(|i| [rect.from[i] == 0, limit[i] == left[i]]),
             wet: [const { None }; SLOTS],
             upper: [const { None }; SLOTS],
             own: BTreeMap::new(),
@@ -130,6 +135,12 @@ impl Window {
     #[must_use]
     pub fn limit(&self) -> [usize; 2] {
         self.limit
+    }
+
+    /// True where the surface ends with it, or in it: left and right, below and above.
+    #[must_use]
+    pub fn borders(&self) -> [[bool; 2]; 2] {
+        self.borders
     }
 
     /// Height of the surface that catches paint, tooth and dry relief, cells; at most 0 where nothing is dry.

@@ -45,6 +45,8 @@ struct Session {
     rows: Range<usize>,
     /// True if paint may have been created without being counted.
     uncounted: bool,
+    /// True if paint may have gone over the border of the surface.
+    overhangs: bool,
 }
 
 /// A paint model on the device, and on the processor once that is lost.
@@ -177,6 +179,7 @@ impl PaintModel for GpuModel {
                 uploaded: false,
                 rows: 0..0,
                 uncounted: false,
+                overhangs: false,
             });
         }
         let Some(session) = &mut self.session else {
@@ -192,6 +195,7 @@ impl PaintModel for GpuModel {
         };
         session.kept.keep(step);
         session.uncounted |= step.lasting || step.handling.transfer == Transfer::Sponge;
+        session.overhangs |= step.window.borders().as_flattened().contains(&true);
         session.rows = if session.rows.is_empty() {
             rows
         } else {
@@ -223,6 +227,9 @@ impl PaintModel for GpuModel {
             Ok((settled, mut report)) => {
                 if session.uncounted {
                     report.from_nowhere = session.on.gained(&settled, window, load).into();
+                } else if session.overhangs {
+                    let gained = session.on.gained(&settled, window, load);
+                    report.lifted = gained.map(|gained| gained.min(0).unsigned_abs()).into();
                 }
                 session.on.write(&settled, window, load);
                 self.session = None;

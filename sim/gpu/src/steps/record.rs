@@ -115,6 +115,9 @@ impl StepRecord {
         let (transfer, flow) = number_and_flow(step.handling.transfer);
         let exchanging = traits.exchanging.pressed(after.press);
         let spread = Spread::of(step);
+        let ends = step.window.borders();
+        let borders = ends.as_flattened().iter().rev();
+        let borders = borders.fold(0, |bits, ends| bits << 1 | u32::from(*ends));
         Self {
             half_widths: std::array::from_fn(|i| traits.half_width_before(i + 1)),
             // Modulo 2³²: beyond the window no cell is read.
@@ -162,7 +165,7 @@ impl StepRecord {
             swap: exchanging.swap,
             film_most: traits.film_most as f32,
             seep: [traits.seep.beside, traits.seep.along, traits.seep.clings].map(|v| v as f32),
-            spread: spread.cells << 1 | spread.axis,
+            spread: spread.cells << 1 | spread.axis | borders << 8 | traits.parts << 16,
             sheets: u32::from(on.sheets),
             shear: exchanging.shear(after.press),
         }

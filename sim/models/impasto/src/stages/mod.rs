@@ -8,6 +8,7 @@
 //! | [`velocity`] | 2: velocity of the paint under it |
 //! | [`advection`] | 3: motion of the paint, counted |
 //! | [`exchange`] | 4 and 5: Algorithm 3, both ways |
+//! | `overhang` | what goes over the border |
 //! | [`sheets`] | what lies on top stays there |
 //! | [`sides`] | deposits along the step |
 //! | [`bristle_flow`] | paint moves within the head |
@@ -18,6 +19,7 @@ pub mod advection;
 pub mod bristle_flow;
 pub mod exchange;
 pub mod levelling;
+mod overhang;
 pub mod rest;
 pub mod seep;
 pub mod sheets;

@@ -8,6 +8,7 @@ use super::advection::{Advection, Axis};
 use super::bristle_flow::flow;
 use super::exchange::Exchange;
 use super::levelling::HALO;
+use super::overhang::Overhang;
 use super::rest::level;
 use super::seep::seep;
 use super::velocity::Faces;
@@ -18,6 +19,7 @@ pub struct Impasto {
     footprint: Footprint,
     faces: Faces,
     advection: Advection,
+    overhang: Overhang,
     exchange: Exchange,
 }
 
@@ -40,6 +42,7 @@ impl PaintModel for Impasto {
             }
             Transfer::Vacuum => report.lifted = vacuum(footprint, step).into(),
             _ => {
+                self.overhang.find(footprint, step);
                 if step.handling.push {
                     self.faces.find(footprint, step);
                     let first = if step.load.steps().is_multiple_of(2) {
@@ -58,6 +61,7 @@ impl PaintModel for Impasto {
                     }
                 }
                 report.from_nowhere = self.exchange.run(footprint, step).into();
+                report.lifted = self.overhang.wipe(step).into();
                 flow(step);
                 seep(step);
             }

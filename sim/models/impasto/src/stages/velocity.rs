@@ -201,7 +201,7 @@ fn limit(faces: &mut [f32], leaves: &mut Vec<f32>, next: usize, width: usize) {
 }
 
 /// Share of thinner in the wet paint under a contact.
-fn thinner_of(contact: &Contact, wet: f32, step: &Step<'_>) -> f32 {
+pub(super) fn thinner_of(contact: &Contact, wet: f32, step: &Step<'_>) -> f32 {
     match step.thinner.and_then(|slot| step.window.plane(slot)) {
         Some(plane) if wet > 0.0 => plane[contact.cell as usize] / wet,
         _ => 0.0,

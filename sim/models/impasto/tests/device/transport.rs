@@ -307,6 +307,7 @@ fn paint_goes_both_ways() {
                 (_, true) => Exchanging::BLADE,
             };
             scene.to.press = PRESS;
+            scene.handling.push = false;
             scene
         };
         let mut pushed = scene();

@@ -9,7 +9,15 @@ use maulstick_model::brush::traits::TEXELS_PER_STRIP;
 use maulstick_model::footprint::contact::Contact;
 
 use crate::device;
-use crate::probed::{run, scene, stepped};
+use crate::probed::{run, stepped};
+use crate::scene::Scene;
+
+/// A scene in which no paint is pushed, and so none over the border.
+fn scene(seed: u64, steps: u64) -> Scene {
+    let mut scene = crate::probed::scene(seed, steps);
+    scene.handling.push = false;
+    scene
+}
 
 /// Seeping between and along bristles agrees with the processor's, in either order, after the flow: two passes, each
 /// with an error of up to a quantum.

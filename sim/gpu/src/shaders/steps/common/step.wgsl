@@ -88,7 +88,9 @@ struct Step {
     seep_along: f32,
     // Quanta of a texel's film that cling to a strip.
     clings: f32,
-    // Cells over which a deposit is spread, in all but the lowest bit; 0 along x, 1 along y in that.
+    // Bit 0: 0 where a deposit is spread along x, 1 along y; from bit 1 the cells over which it is spread; from bit 8
+    // whether the surface ends at the window's left, right, lower, upper limit; from bit 16 the parts in which paint
+    // moves.
     spread: u32,
     // 1 where as many planes follow with what is in the upper sheet.
     sheets: u32,

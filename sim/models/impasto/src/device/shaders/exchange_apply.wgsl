@@ -49,12 +49,12 @@ fn going(i: u32, texel: u32) -> Going {
 // maulstick-model).
 fn reach_of_spread() -> u32 {
     let fullest = bitcast<f32>(atomicLoad(&stats[stat(FULLEST)]));
-    let length = step.spread >> 1u;
+    let length = step.spread >> 1u & 127u;
     return select(0u, length / 2u, length > 1u && fullest <= TAKES * step.cell_max);
 }
 
 fn part_at(off: u32) -> f32 {
-    let length = step.spread >> 1u;
+    let length = step.spread >> 1u & 127u;
     return select(1.0, 0.5, length % 2u == 0u && off == length / 2u) / f32(length);
 }
 
@@ -120,6 +120,25 @@ fn note_left(i: u32, total: f32) {
     }
     let height = total + totals[2u * cells() + i] / step.cells_per_quantum;
     raise(TOP_EVER, bitcast<u32>(max(height, 0.0)));
+}
+
+// Share of a cell's paint that the step pushes over the border of the surface.
+fn over_border(i: u32, total: f32) -> f32 {
+    let at = vec2(step.from_x + i % step.width, step.from_y + i / step.width);
+    let limit = vec2(step.limit_x, step.limit_y);
+    let contact = contacts[i];
+    let parts = f32(step.spread >> 16u);
+    let pressed = contact.squish * max(contact.reach, 0.0) * contact.cover;
+    var share = 0.0;
+    for (var axis = 0u; axis < 2u; axis++) {
+        let ends = step.spread >> (8u + 2u * axis) & 3u;
+        let low = (ends & 1u) == 1u && at[axis] == 0u;
+        if low || (ends & 2u) == 2u && at[axis] + 1u == limit[axis] {
+            let moved = select(1.0, -1.0, low) * contact.moved[axis];
+            share += clamp(parts * (contact.follows * moved + pressed), 0.0, 1.0);
+        }
+    }
+    return min(share, 1.0) * max(total - step.stain, 0.0) / max(total, 1.0);
 }
 
 @compute @workgroup_size(256)
@@ -207,6 +226,10 @@ fn exchange_apply(@builtin(global_invocation_id) id: vec3<u32>) {
         }
     }
     let two = layered && only == SEVERAL;
+    var over = 0.0;
+    if touched && step.push != 0u {
+        over = over_border(i, totals[i]);
+    }
     var sum = 0.0;
     for (var paint = 0u; paint < step.planes; paint++) {
         let at = paint * step.plane + cell;
@@ -240,9 +263,10 @@ fn exchange_apply(@builtin(global_invocation_id) id: vec3<u32>) {
                 planes[upper_of(paint, cell)] = select(0.0, upper, two);
             }
         }
-        let now = there + left - sent + came - trunc(leaves * taken);
+        var now = there + left - sent + came - trunc(leaves * taken);
+        now -= trunc(now * over);
         sum += now;
-        if left != 0.0 || taken != 0.0 || came != 0.0 {
+        if left != 0.0 || taken != 0.0 || came != 0.0 || over > 0.0 {
             planes[at] = now;
         }
         if touched && (left != 0.0 || taken != 0.0) && step.transfer != SPONGE {
