@@ -5,6 +5,7 @@ use half::slice::HalfFloatSliceExt as _;
 use maulstick_canvas::dry::DryStack;
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::quantum::QUANTUM_M;
+use maulstick_canvas::sheet::SheetFilms;
 use maulstick_canvas::tile::Tile;
 use maulstick_optics::light::HeightField;
 use maulstick_optics::light::gloss::{merged_gloss, roughness};
@@ -12,7 +13,6 @@ use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::paint::TILE;
 
 use crate::appearance::Appearance;
-use crate::show_paint::Films;
 
 /// Display of a tile before light.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,13 +31,13 @@ pub struct DisplayTile {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WetFilms {
     /// All paint.
-    pub(crate) all: Films,
+    pub(crate) all: SheetFilms,
     /// Body and upper sheet, where there are two.
-    pub(crate) sheets: Option<[Films; 2]>,
+    pub(crate) sheets: Option<[SheetFilms; 2]>,
 }
 
 /// Films for the optics.
-fn borrowed(films: &Films) -> Vec<(usize, &[f32])> {
+fn borrowed(films: &SheetFilms) -> Vec<(usize, &[f32])> {
     let films = films.iter();
     films.map(|(slot, film)| (*slot, film.as_slice())).collect()
 }

@@ -6,6 +6,7 @@ use crate::dry::{DryLayer, DryStack};
 use crate::page::Page;
 use crate::planes::{Planes, TILE_CELLS, painted};
 use crate::quantum::{CELL_MAX, SLOTS};
+use crate::sheet;
 use crate::tile::Tile;
 
 /// A tile whose newest layers are wet again.
@@ -127,7 +128,13 @@ impl Tile {
         }
         let planes = wet.planes.into_iter().enumerate();
         let planes = planes.filter_map(|(slot, plane)| Some((slot, plane?.into())));
-        let planes = painted(planes).with_own(self.wet().own().iter().cloned());
+        // What lay on top of a layer lies on top again, unless other paint covers it.
+        let newest = links.first()?.layer().planes.get();
+        let on_top = (newest.own().iter())
+            .filter(|own| self.wet_page().is_none() && sheet::slot_of(own.shape).is_some());
+        let before = self.wet();
+        let own = before.own().iter().chain(on_top).cloned();
+        let planes = painted(planes).with_own(own);
         Some(Rewet {
             tile: Self::paged(pager, planes, dry, Some(self)),
             full_cells: wet.full_cells,

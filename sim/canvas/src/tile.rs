@@ -7,6 +7,7 @@ use crate::own_plane::OwnPlane;
 use crate::page::{Page, Pager};
 use crate::planes::{Planes, painted, plane_counts};
 use crate::quantum::{CELL_MAX, Counts};
+use crate::sheet::{lower_share, slot_of, sum_of_notes};
 
 /// Column and row of a tile, row 0 at the bottom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -138,27 +139,14 @@ impl Tile {
             return by_reference();
         }
         let wet = page.get();
-        if is_whole && !wet.own().is_empty() {
+        if is_whole && wet.own().iter().any(|own| slot_of(own.shape).is_none()) {
             return by_reference();
         }
-        let lower = wet.iter();
-        let lower = painted(lower.map(|(slot, plane)| (*slot, lower_part(plane, share, stays))));
+        let lower = lower_share(&wet, share, stays);
         if lower.is_empty() {
             return None;
         }
-        let upper = wet.iter().map(|(slot, plane)| {
-            let dried = lower.iter().find(|(other, _)| other == slot);
-            let left = match dried {
-                Some((_, dried)) => plane
-                    .iter()
-                    .zip(dried.iter())
-                    .map(|(all, dry)| all - dry)
-                    .collect(),
-                None => Arc::clone(plane),
-            };
-            (*slot, left)
-        });
-        let upper = painted(upper).with_own(wet.own().iter().cloned());
+        let upper = without(&wet, &lower);
         let pager = page.pager();
         let wet = (!upper.is_empty()).then(|| Page::new(pager, Arc::new(upper), Some(page)));
         let grown = grows.and_then(|link| Some((link, sum(&link.layer().planes.get(), &lower)?)));
@@ -205,7 +193,29 @@ impl Tile {
     }
 }
 
-/// Sum of counts; `None` if a cell would have more of a paint than is exact.
+/// What is left of planes without a part of them.
+fn without(planes: &Planes, part: &Planes) -> Planes {
+    let left = planes.iter().map(|(slot, plane)| {
+        let gone = part.iter().find(|(other, _)| other == slot);
+        let left = match gone {
+            Some((_, gone)) => {
+                let cells = plane.iter().zip(gone.iter());
+                cells.map(|(all, gone)| all - gone).collect()
+            }
+            None => Arc::clone(plane),
+        };
+        (*slot, left)
+    });
+    let left = painted(left);
+    let own = planes.own().iter();
+    let own: Vec<OwnPlane> = own
+        .filter(|own| !(left.is_empty() && own.shape.is_note()))
+        .cloned()
+        .collect();
+    left.with_own(own)
+}
+
+/// Sum of counts, each sheet with its own; `None` if a cell would have more of a paint than is exact.
 fn sum(one: &Planes, other: &Planes) -> Option<Planes> {
     let mut planes = one.clone();
     for (slot, more) in other {
@@ -222,7 +232,7 @@ fn sum(one: &Planes, other: &Planes) -> Option<Planes> {
             }
         }
     }
-    Some(planes)
+    Some(planes.with_own(sum_of_notes(one, other)))
 }
 
 /// A stored tile and the number of its version; no tile where nothing was ever painted.
@@ -232,17 +242,6 @@ pub struct Version {
     pub number: u64,
     /// The tile.
     pub tile: Option<Arc<Tile>>,
-}
-
-/// The lower share of a plane, in whole quanta; 0 in cells that stay.
-fn lower_part(plane: &[f32], share: f32, stays: &[usize]) -> Arc<[f32]> {
-    let mut lower: Vec<f32> = if share >= 1.0 {
-        plane.to_vec()
-    } else {
-        plane.iter().map(|count| (count * share).floor()).collect()
-    };
-    stays.iter().for_each(|cell| lower[*cell] = 0.0);
-    lower.into()
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use maulstick_types::paint::TILE;
 
 use crate::dry::DryStack;
 use crate::own_plane::{OwnPlane, OwnShape};
-use crate::planes::painted;
+use crate::planes::{Planes, painted};
 use crate::quantum::{QUANTUM_M, SLOTS};
 use crate::relief::Relief;
 use crate::relief::ride::ride;
@@ -86,33 +86,38 @@ impl Window {
         window.lay_dry(relief.cells_per_m() * QUANTUM_M as f32);
         window.ride = ride(&window.base, width, f64::from(relief.cells_per_m()));
         for id in rect.tiles() {
-            let Some(tile) = &store.version(id).tile else {
-                continue;
-            };
-            let start = window.corner(id);
-            let wet = tile.wet();
-            for plane in wet.own() {
-                if let Some(slot) = sheet::slot_of(plane.shape) {
-                    let to = window.upper[slot].get_or_insert_with(|| vec![0.0; width * height]);
-                    for (at, quanta) in sheet::quanta(&plane.bytes).enumerate() {
-                        to[start + at / TILE * width + at % TILE] = quanta;
-                    }
-                    continue;
-                }
-                let cell = plane.shape.cell_bytes();
-                let to = window.own_mut(plane.shape);
-                for (row, cells) in plane.bytes.chunks_exact(TILE * cell).enumerate() {
-                    to[(start + row * width) * cell..][..TILE * cell].copy_from_slice(cells);
-                }
-            }
-            for (slot, plane) in &*wet {
-                let to = window.wet[*slot].get_or_insert_with(|| vec![0.0; width * height]);
-                for (row, cells) in plane.chunks_exact(TILE).enumerate() {
-                    to[start + row * width..][..TILE].copy_from_slice(cells);
-                }
+            if let Some(tile) = &store.version(id).tile {
+                window.read(id, &tile.wet());
             }
         }
         Some(window)
+    }
+
+    /// Copies the wet planes of a tile.
+    fn read(&mut self, id: TileId, wet: &Planes) {
+        let (start, width) = (self.corner(id), self.width);
+        let cells = self.width * self.height;
+        let new = || vec![0.0; cells];
+        for (slot, plane) in wet {
+            let to = self.wet[*slot].get_or_insert_with(new);
+            for (row, cells) in plane.chunks_exact(TILE).enumerate() {
+                to[start + row * width..][..TILE].copy_from_slice(cells);
+            }
+        }
+        for plane in wet.own() {
+            if let Some(slot) = sheet::slot_of(plane.shape) {
+                let to = self.upper[slot].get_or_insert_with(new);
+                for (at, quanta) in sheet::quanta(&plane.bytes).enumerate() {
+                    to[start + at / TILE * width + at % TILE] = quanta;
+                }
+                continue;
+            }
+            let cell = plane.shape.cell_bytes();
+            let to = self.own_mut(plane.shape);
+            for (row, cells) in plane.bytes.chunks_exact(TILE * cell).enumerate() {
+                to[(start + row * width) * cell..][..TILE * cell].copy_from_slice(cells);
+            }
+        }
     }
 
     /// Raises the surface that catches paint by its dried paint.

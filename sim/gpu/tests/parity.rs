@@ -27,11 +27,11 @@ fn backends() -> Vec<Box<dyn FilmBackend>> {
     vec![Box::new(CpuFilms::new()), Box::new(gpu)]
 }
 
-/// Films of 0 to 16 paints, up to 200 µm and up to 25 mm thick, over planes and over even grounds.
+/// Films of 0 to 28 paints, up to 200 µm and up to 25 mm thick, over planes and over even grounds.
 fn scene(studio: &Studio, seed: u64) -> Vec<Film> {
     let mut random = Pcg64::seed_from_u64(seed);
     let mut films = Vec::new();
-    for paints in [0, 1, 2, 3, 4, 5, 7, 8, 11, 16] {
+    for paints in [0, 1, 2, 3, 4, 5, 7, 8, 11, 16, 28] {
         for (most_m, planes) in [(2e-4, true), (2e-4, false), (0.025, true)] {
             films.push(Film::random(&mut random, studio, paints, most_m, planes));
         }

@@ -11,14 +11,19 @@ use crate::interface::{Step, Transfer};
 /// Largest number of cells to one side.
 pub const REACH: usize = 4;
 
-/// Distribution of a deposit over cells along an axis.
+/// Distribution of a deposit over cells in a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Spread {
-    /// 0 along x, 1 along y.
+    /// The axis along which it is longer: 0 x, 1 y.
     pub axis: u32,
-    /// Length of the step, cells; a deposit on one cell where it is at most 1.
+    /// Its length along that axis, cells; a deposit on one cell where it is at most 1.
     pub cells: u32,
+    /// Cells along the other axis in [`SLOPES`] cells along this one.
+    pub slope: i32,
 }
+
+/// Steps of a slope.
+pub const SLOPES: i32 = 64;
 
 impl Spread {
     /// The distribution in a step. Films with a limit and paint that lasts stay where they are laid, and a sponge and a
@@ -33,10 +38,19 @@ impl Spread {
             to.iter().zip(from).map(|(to, from)| to - from).sum()
         };
         let (from, to) = (step.sweep.from, step.sweep.to);
-        let [x, y] = [way(&from.x, &to.x), way(&from.y, &to.y)];
+        let way = [way(&from.x, &to.x), way(&from.y, &to.y)];
+        let axis = usize::from(way[1].abs() > way[0].abs());
+        let slope = way[1 - axis] / way[axis];
+        if !slope.is_finite() {
+            return Self::default();
+        }
+        // Where painting falls behind, steps become longer, but not what is seen of them.
+        let usual = 1.0 / step.traits.cell_per_reference;
+        let length = step.traits.step_cells.min(usual) / (1.0 + slope * slope).sqrt();
         Self {
-            axis: u32::from(y.abs() > x.abs()),
-            cells: (step.traits.step_cells.round() as u32).min(2 * REACH as u32),
+            axis: axis as u32,
+            cells: (length.round() as u32).min(2 * REACH as u32),
+            slope: (slope * SLOPES as f32).round() as i32,
         }
     }
 
@@ -50,11 +64,24 @@ impl Spread {
         }
     }
 
+    /// Columns and rows from a cell to the one that is `off` further ahead.
+    #[must_use]
+    pub fn offset(self, off: usize) -> [isize; 2] {
+        let off = off as i32;
+        let aside = (off * self.slope + SLOPES / 2).div_euclid(SLOPES);
+        let [along, aside] = [off as isize, aside as isize];
+        if self.axis == 0 {
+            [along, aside]
+        } else {
+            [aside, along]
+        }
+    }
+
     /// Share of a deposit that a cell `off` cells to the side gets.
     #[must_use]
     pub fn share(self, off: usize) -> f32 {
         // An even number of cells ends in the middle of two.
-        let halves = self.cells % 2 == 0 && off == self.reach() && off > 0;
+        let halves = self.cells.is_multiple_of(2) && off == self.reach() && off > 0;
         let part = 1.0 / self.cells.max(1) as f32;
         if halves { 0.5 * part } else { part }
     }
@@ -67,7 +94,10 @@ mod tests {
     #[test]
     fn a_deposit_is_spread_over_the_length_of_a_step() {
         for cells in 0..=8 {
-            let spread = Spread { axis: 0, cells };
+            let spread = Spread {
+                cells,
+                ..Spread::default()
+            };
             let reach = spread.reach();
             assert!(reach <= REACH && (reach == 0) == (cells < 2));
             let sides: f32 = (1..=reach).map(|off| 2.0 * spread.share(off)).sum();
@@ -81,6 +111,24 @@ mod tests {
                 (moment - (length * length - 1.0) / 12.0).abs() < 0.26,
                 "{cells}: {moment}"
             );
+        }
+    }
+
+    #[test]
+    fn a_spread_lies_along_the_step() {
+        for (axis, slope, want) in [
+            (0, 0, [3, 0]),
+            (1, 0, [0, 3]),
+            (0, SLOPES, [3, 3]),
+            (1, -SLOPES, [-3, 3]),
+            (0, SLOPES / 2, [3, 2]),
+        ] {
+            let spread = Spread {
+                axis,
+                cells: 8,
+                slope,
+            };
+            assert_eq!(spread.offset(3), want);
         }
     }
 }

@@ -70,6 +70,13 @@ impl Exchanging {
         Self { swap, ..self }
     }
 
+    /// The exchange's numbers for a graphics device: ln of the share kept, whether the two sides even out, the most, the
+    /// share of a skin.
+    #[must_use]
+    pub fn numbers(&self) -> [f32; 4] {
+        [self.ln_kept, self.evens, self.most, self.swap]
+    }
+
     /// Share of the paint that goes over along a travel in reference cells.
     #[must_use]
     #[inline(always)]

@@ -10,8 +10,8 @@ use crate::studio::{FilmPlanes, Studio, Under};
 
 /// Cells of a tile, row after row.
 pub const TILE_CELLS: usize = TILE * TILE;
-/// Most paints of a film.
-pub const MOST_PAINTS: usize = 16;
+/// Most paints of a film: as many as a painting has.
+pub const MOST_PAINTS: usize = 64;
 /// Most threads that [`CpuFilms::new`] takes: painting itself needs the others.
 const MOST_THREADS: usize = 2;
 
@@ -227,11 +227,11 @@ mod tests {
             };
             check(&studio, &[films]).map_err(|error| error.to_string())
         };
-        assert_eq!(says(0, &plane, 16, &ground), Ok(()));
+        assert_eq!(says(0, &plane, 64, &ground), Ok(()));
         for (got, part) in [
             (says(1, &plane, 1, &ground), "no paint has slot 1"),
             (says(0, &plane[1..], 1, &ground), "4095 cells"),
-            (says(0, &plane, 17, &ground), "17 paints"),
+            (says(0, &plane, 65, &ground), "65 paints"),
             (says(0, &plane, 1, &ground[1..]), "7 reflectances"),
         ] {
             assert!(got.expect_err("wrong").contains(part), "{part}");

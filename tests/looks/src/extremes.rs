@@ -102,3 +102,52 @@ fn strokes_over_the_edge_lose_nothing() {
         }
     }
 }
+
+#[test]
+fn a_stroke_of_ten_metres_loses_nothing() {
+    let mut easel = easel("flat");
+    easel.load("Ultramarine Blue").expect("loaded");
+    easel
+        .stroke(&Stroke::along(15.0, -5_000.0, 5_000.0, 0.5))
+        .expect("painted");
+    whole(&mut easel);
+    assert!(easel.film(None).mean() > 1.0, "it crosses the canvas");
+}
+
+#[test]
+fn all_colours_on_one_head_are_painted_and_seen() {
+    let library = maulstick_optics::PaintLibrary::measured().expect("whole");
+    let parts = library.paints().iter();
+    let parts: Vec<String> = parts.map(|paint| format!("{}=1", paint.name)).collect();
+    let mut easel = easel("flat");
+    for (place, y) in [10.0, 20.0, 15.0].into_iter().enumerate() {
+        let mixtures = [
+            parts[..14].join(","),
+            parts[14..].join(","),
+            parts.join(","),
+        ];
+        easel.load(&mixtures[place]).expect("loaded");
+        easel
+            .stroke(&Stroke::along(y, 5.0, 35.0, 0.4))
+            .expect("painted");
+        whole(&mut easel);
+    }
+    assert_eq!(library.paints().len(), 28);
+    for map in easel.colours() {
+        assert!(map.cells.iter().all(|value| value.is_finite()));
+    }
+}
+
+#[test]
+fn a_rake_of_four_thousand_bristles_paints() {
+    let mut file = brush("flat", 14.0).expect("flat");
+    file.strips.count = 4_000;
+    let text = file.to_toml().expect("text");
+    let file = maulstick_brush::BrushFile::parse(&text).expect("a brush");
+    let mut easel = Easel::new([40.0, 30.0], 0.25, "linen", file).expect("an easel");
+    easel.load("Titanium White").expect("loaded");
+    easel
+        .stroke(&Stroke::along(15.0, 10.0, 30.0, 0.5))
+        .expect("painted");
+    whole(&mut easel);
+}

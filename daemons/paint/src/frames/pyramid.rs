@@ -29,6 +29,18 @@ fn is_plain(surface: &FedSurface) -> bool {
     surface.grid[0] * surface.grid[1] > PLAIN_TILES && surface.bare.wells.is_empty()
 }
 
+/// Planes of paints by slot.
+type Paints<'a> = Vec<(usize, &'a [f32])>;
+
+/// A film over what lies under it.
+fn film<'a>(paints: &'a [(usize, &'a [f32])], under: Under<'a>) -> FilmPlanes<'a> {
+    FilmPlanes {
+        paints,
+        opacity: 1.0,
+        under,
+    }
+}
+
 /// The coarsest level: a single tile shows the whole surface.
 pub(super) fn coarsest(surface: &FedSurface) -> u32 {
     let [across, up] = surface.grid;
@@ -204,7 +216,7 @@ impl Pyramid {
                 None => ground.under(),
             })
             .collect();
-        let colours = match self.shade(look, &films, under) {
+        let colours = match self.colours(look, &films, &under) {
             Ok(colours) => colours,
             Err(error) => {
                 tracing::error!("tiles cannot be shown: {error}");
@@ -220,20 +232,13 @@ impl Pyramid {
     }
 
     /// Colours of wet films over what lies under them.
-    fn shade(
+    fn colours(
         &mut self,
         look: &Appearance,
         films: &[WetFilms],
-        mut under: Vec<Under<'_>>,
+        under: &[Under<'_>],
     ) -> Result<Vec<[Vec<f32>; 3]>, BackendError> {
-        fn film<'a>(paints: &'a [(usize, &'a [f32])], under: Under<'a>) -> FilmPlanes<'a> {
-            FilmPlanes {
-                paints,
-                opacity: 1.0,
-                under,
-            }
-        }
-        let bodies: Vec<(usize, Vec<(usize, &[f32])>)> = (films.iter().enumerate())
+        let bodies: Vec<(usize, Paints<'_>)> = (films.iter().enumerate())
             .filter_map(|(tile, films)| Some((tile, films.body()?)))
             .collect();
         let batch: Vec<FilmPlanes<'_>> = bodies
@@ -244,10 +249,11 @@ impl Pyramid {
             [] => Vec::new(),
             _ => self.films.bake(&look.studio, &batch)?,
         };
+        let mut under = under.to_vec();
         for ((tile, _), planes) in bodies.iter().zip(&baked) {
             under[*tile] = Under::Planes(planes);
         }
-        let planes: Vec<Vec<(usize, &[f32])>> = films.iter().map(WetFilms::planes).collect();
+        let planes: Vec<Paints<'_>> = films.iter().map(WetFilms::planes).collect();
         let batch: Vec<FilmPlanes<'_>> = (planes.iter().zip(under))
             .map(|(paints, under)| film(paints, under))
             .collect();

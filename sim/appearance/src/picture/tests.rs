@@ -1,12 +1,15 @@
 use std::sync::Arc;
 
+use maulstick_canvas::page::Page;
+use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::relief::Relief;
+use maulstick_canvas::sheet;
 use maulstick_canvas::store::TileStore;
 use maulstick_canvas::tile::{Tile, Version};
 use maulstick_optics::colour::SrgbTable;
 use maulstick_optics::light::{Facet, HeightField, Lamp, LampSetup, Spot, Surroundings, lit};
-use maulstick_optics::{PaintLibrary, Studio};
+use maulstick_optics::{FilmPlanes, PaintLibrary, Studio, Under};
 use maulstick_types::paint::TILE;
 
 use super::drawing::flat;
@@ -210,4 +213,56 @@ fn the_ground_shows_beside_paint_at_its_edge() {
     assert!(off(0.25 * paint + 0.75 * ground) < 1e-5);
     assert!(off(paint) > 0.2, "an even film passes");
     assert_eq!(red(&edge, 21), ground);
+}
+
+/// What lies on top is seen over the rest, wet and dry, and not as its mixture.
+#[test]
+fn light_sees_two_sheets_in_order() {
+    let mut studio = studio();
+    let library = PaintLibrary::measured().expect("whole");
+    let white = studio.add(library.find("Titanium White").expect("known"));
+    let (bare, look) = (bare(&studio), Appearance::new(studio.clone()));
+    let [blue_um, white_um] = [250.0, 60.0];
+    let plane = |um: f64| vec![(um * 1e-6 / QUANTUM_M) as f32; TILE_CELLS];
+    let planes = |order: [usize; 2]| {
+        let [under, over] = order;
+        let um = |slot: usize| if slot == white { white_um } else { blue_um };
+        let counts = [under, over].map(|slot| (slot, plane(um(slot)).into()));
+        let mut counts = Vec::from(counts);
+        counts.sort_by_key(|(slot, _)| *slot);
+        let planes = Planes::from_iter(counts);
+        planes.with_own([sheet::note(over, plane(um(over)).into_iter())])
+    };
+    let seen = |tile: &Tile| {
+        let store = TileStore::new(CELLS);
+        let banded = Banded::new(&store, &bare, &look, CELL_M);
+        let id = banded.tiles(0).next().expect("a tile").0;
+        let shown = banded.shown(id, Some(tile), &mut Bakery::default());
+        shown.rgb.map(|plane| plane[9])
+    };
+    let film = |paint: usize, um: f64, under: Under<'_>| {
+        let metres = vec![1e-6 * um as f32; TILE_CELLS];
+        let paints = [(paint, &metres[..])];
+        let films = FilmPlanes {
+            paints: &paints,
+            opacity: 1.0,
+            under,
+        };
+        let mut rgb = [(); 3].map(|()| vec![0.0; TILE_CELLS]);
+        let [red, green, blue] = &mut rgb;
+        studio.shade(&films, [red, green, blue]);
+        (rgb.map(|plane| plane[9]), studio.bake(&films, TILE_CELLS))
+    };
+    let ground = vec![0.95; studio.wavelengths()];
+    let (_, under) = film(0, blue_um, Under::Even(&ground));
+    let (want, _) = film(white, white_um, Under::Planes(&under));
+    let wet = Tile::of_pages(Some(Page::loose(planes([0, white]))), None);
+    let dry = wet.dried(1, 1.0, &[]).expect("wet");
+    let near = |got: [f32; 3]| (0..3).all(|i| (got[i] - want[i]).abs() < 1e-3);
+    assert!(near(seen(&wet)), "{:?} {want:?}", seen(&wet));
+    assert!(near(seen(&dry)), "{:?} {want:?}", seen(&dry));
+    let other = Tile::of_pages(Some(Page::loose(planes([white, 0]))), None);
+    assert!(!near(seen(&other)), "the other order passes");
+    let mixed = Tile::of_pages(Some(Page::loose(planes([0, white]).with_own([]))), None);
+    assert!(!near(seen(&mixed)), "a mixture passes");
 }

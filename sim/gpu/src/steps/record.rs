@@ -59,14 +59,11 @@ pub struct StepRecord {
     ride_below: f32,
     round: f32,
     follows: f32,
-    ln_kept: f32,
-    evens: f32,
-    most_over: f32,
-    swap: f32,
+    transfers: [f32; 4],
     film_most: f32,
     seep: [f32; 3],
-    spread: u32,
-    sheets: u32,
+    /// Bits of the spread, and 1 where there may be two sheets.
+    spread: [u32; 2],
     shear: f32,
 }
 
@@ -102,6 +99,17 @@ fn number_and_flow(transfer: Transfer) -> (u32, f32) {
     }
 }
 
+/// Spread, borders and parts of a step, as step.wgsl has them.
+fn spread_bits(step: &Step<'_>) -> u32 {
+    let spread = Spread::of(step);
+    let ends = step.window.borders();
+    let borders = ends.as_flattened().iter().rev();
+    let borders = borders.fold(0, |bits, ends| bits << 1 | u32::from(*ends));
+    let parts = step.traits.parts;
+    let slope = spread.slope as u32;
+    spread.axis | spread.cells << 1 | borders << 8 | parts << 12 | slope << 24
+}
+
 impl StepRecord {
     /// A motion of a step, for a brush and a window on the device, without a drawing of the head.
     pub fn new(
@@ -114,10 +122,6 @@ impl StepRecord {
         let (origin, limit) = (step.window.origin(), step.window.limit());
         let (transfer, flow) = number_and_flow(step.handling.transfer);
         let exchanging = traits.exchanging.pressed(after.press);
-        let spread = Spread::of(step);
-        let ends = step.window.borders();
-        let borders = ends.as_flattened().iter().rev();
-        let borders = borders.fold(0, |bits, ends| bits << 1 | u32::from(*ends));
         Self {
             half_widths: std::array::from_fn(|i| traits.half_width_before(i + 1)),
             // Modulo 2³²: beyond the window no cell is read.
@@ -159,14 +163,10 @@ impl StepRecord {
             ride_below: step.window.ride_below(),
             round: 2.0 * traits.half_thickness,
             follows: traits.follows / traits.parts as f32,
-            ln_kept: exchanging.ln_kept,
-            evens: exchanging.evens,
-            most_over: exchanging.most,
-            swap: exchanging.swap,
+            transfers: exchanging.numbers(),
             film_most: traits.film_most as f32,
             seep: [traits.seep.beside, traits.seep.along, traits.seep.clings].map(|v| v as f32),
-            spread: spread.cells << 1 | spread.axis | borders << 8 | traits.parts << 16,
-            sheets: u32::from(on.sheets),
+            spread: [spread_bits(step), u32::from(on.sheets)],
             shear: exchanging.shear(after.press),
         }
     }

@@ -1,6 +1,6 @@
 //! Random films, and their reflectance in plain f64: film over film, wavelength by wavelength.
 
-use maulstick_optics::backend::{FilmBackend, MOST_PAINTS, TILE_CELLS};
+use maulstick_optics::backend::{FilmBackend, TILE_CELLS};
 use maulstick_optics::colour::{linear_srgb_as_it_is, xyz_to_linear_srgb};
 use maulstick_optics::studio::{RuleKind, StudioSettings};
 use maulstick_optics::{FilmPlanes, PaintLibrary, Studio, Under, km};
@@ -110,7 +110,7 @@ pub(crate) fn studio(rule: RuleKind, samples: usize) -> (Studio, StudioSettings)
     };
     let library = PaintLibrary::measured().expect("whole");
     let mut studio = Studio::new(&settings, library.paints());
-    for paint in &library.paints()[..MOST_PAINTS] {
+    for paint in library.paints() {
         studio.add(paint);
     }
     (studio, settings)

@@ -89,7 +89,13 @@
 //!   empty one catches on peaks, a light one on dry ridges. A brush with a limit (a glaze) leaves up to as much again
 //!   in hollows, and has no limit on a palette, where paints are mixed.
 //! - Colour travels by a skin that bristle and paint shear between them wherever their films touch, both ways, so also
-//!   where they are equal: the wider the gap, the less. The stroke of a white brush through wet blue stays bluish for a hand's length.
+//!   where they are equal: the wider the gap, the less. The stroke of a white brush through wet blue stays bluish for a
+//!   hand's length. A brush that hardly presses glides: it shears by the square of its press.
+//! - Wet paint lies in two sheets. What is laid last lies on top: a light stroke covers what is wet, broken where it
+//!   starves, and takes from the upper sheet alone. Bristles that plough through work the two into one. Light sees body
+//!   and sheet in order. A cell of one paint has one sheet, and only that is paid for.
+//! - A deposit is spread along its step, over cells that the bristles touch, too; otherwise every second row would have
+//!   another bristle as its last. What is pushed over the border of the surface is wiped off.
 //! - A badger exchanges more than it takes up, so it softens. A blade floats on its paint by its pressure, takes up
 //!   what stands above its edge and fills what lies below: it scrapes and deposits slabs.
 //! - The lowest strip of a cell depends on the cell size. To keep the trace of a brush independent of it, paint flows

@@ -52,6 +52,8 @@ pub struct Exchange {
 struct Share {
     /// Number of its first contact.
     first: usize,
+    /// Share of what bristles reach that they shear in the step.
+    shear: f32,
     meetings: Meetings,
     /// Quanta that each contact demands from the brush, and offers to it.
     wants: [Vec<f32>; 2],
@@ -199,14 +201,7 @@ impl Exchange {
     /// Exchanges one slot, both ways, and returns the uncounted quanta. The gain of the brush is in the shares'
     /// `change`.
     fn exchange(&mut self, slot: usize, step: &mut Step<'_>) -> i64 {
-        self.held.clear();
-        match step.load.film_of(slot) {
-            Some(film) => {
-                let there = self.texels.iter().map(|texel| film[*texel as usize] as f32);
-                self.held.extend(there);
-            }
-            None => self.held.resize(self.texels.len(), 0.0),
-        }
+        self.hold(slot, step.load);
         let on_brush = self.held.iter().any(|count| *count > 0.0);
         let shares = &mut self.shares[..self.used];
         shares.iter_mut().for_each(|share| share.change.clear());
@@ -227,30 +222,7 @@ impl Exchange {
         } else {
             0
         };
-        let layered = self.in_use().iter().any(|share| share.sheets.is_some());
-        let mut planes = if layered {
-            step.window.sheets_mut(slot).map(|plane| &mut plane[..])
-        } else {
-            [&mut step.window.plane_mut(slot)[..], &mut []]
-        };
-        let gives = &self.gives;
-        // Contacts are in the order of their cells, so the last share has the last of them.
-        let shares = self.shares[..self.used].iter_mut().rev();
-        let shares = shares.filter_map(|share| {
-            let first = *share.cells.first()? as usize;
-            let cells = planes.each_mut().map(|rest| Cells {
-                first,
-                cells: rest.split_off_mut(first..).unwrap_or_default(),
-            });
-            Some((share, cells))
-        });
-        each(&mut shares.collect::<Vec<_>>(), |(share, cells)| {
-            if share.sheets.is_some() {
-                swap_sheets(share, gives, cells);
-            } else {
-                swap_paint(share, gives, &mut cells[0]);
-            }
-        });
+        let layered = self.swap(slot, step.window);
         if self.sides.are_given() {
             if layered {
                 let [_, upper] = step.window.sheets_mut(slot);
@@ -271,6 +243,47 @@ impl Exchange {
             changes.map(|change| i64::from(*change)).sum()
         };
         self.on_cells(step.window.plane_mut(slot)) - before + onto_brush
+    }
+
+    /// Looks up the quanta of a paint on the touching texels.
+    fn hold(&mut self, slot: usize, load: &BrushLoad) {
+        self.held.clear();
+        match load.film_of(slot) {
+            Some(film) => {
+                let there = self.texels.iter().map(|texel| film[*texel as usize] as f32);
+                self.held.extend(there);
+            }
+            None => self.held.resize(self.texels.len(), 0.0),
+        }
+    }
+
+    /// Exchanges one paint on the cells of all contacts; true where it may lie in two sheets.
+    fn swap(&mut self, slot: usize, window: &mut Window) -> bool {
+        let layered = self.in_use().iter().any(|share| share.sheets.is_some());
+        let mut planes = if layered {
+            window.sheets_mut(slot).map(|plane| &mut plane[..])
+        } else {
+            [&mut window.plane_mut(slot)[..], &mut []]
+        };
+        let gives = &self.gives;
+        // Contacts are in the order of their cells, so the last share has the last of them.
+        let shares = self.shares[..self.used].iter_mut().rev();
+        let shares = shares.filter_map(|share| {
+            let first = *share.cells.first()? as usize;
+            let cells = planes.each_mut().map(|rest| Cells {
+                first,
+                cells: rest.split_off_mut(first..).unwrap_or_default(),
+            });
+            Some((share, cells))
+        });
+        each(&mut shares.collect::<Vec<_>>(), |(share, cells)| {
+            if share.sheets.is_some() {
+                swap_sheets(share, gives, cells);
+            } else {
+                swap_paint(share, gives, &mut cells[0]);
+            }
+        });
+        layered
     }
 
     /// Spreads one paint that was given along the step.
@@ -318,9 +331,8 @@ impl Share {
             .extend(contacts.iter().map(|contact| contact.cell));
         step.window.totals(&self.cells, &mut self.meetings.lying);
         let (exchanging, press) = (&step.traits.exchanging, step.sweep.to.press);
-        let shear = exchanging.shear(press);
-        self.meetings
-            .of(contacts, step.load.films(), &step.traits, shear);
+        self.shear = exchanging.shear(press);
+        self.meetings.of(contacts, step.load.films(), &step.traits);
         want(
             &self.meetings,
             &exchanging.pressed(press),
@@ -410,7 +422,7 @@ impl Share {
             Sheet {
                 top,
                 lying: meetings.lying[i],
-                fraction: meetings.fraction[i],
+                fraction: self.shear * meetings.fraction[i],
                 travel: meetings.travel[i],
                 comes,
                 goes: self.wants[1][i] * granted.taken[self.places[i] as usize],

@@ -63,28 +63,26 @@ wide! {
             plane.clear();
             plane.resize(given.len(), 0.0);
         }
-        // Rows of one column are one row.
-        let (rows, next) = match spread.axis {
-            0 => (size[1], 1),
-            _ => (1, size[0]),
-        };
-        let length = given.len() / rows.max(1);
+        let [width, height] = size;
         for off in 1..=spread.reach() {
-            let (share, off) = (spread.share(off), off * next);
-            let inner = length.saturating_sub(off);
-            for row in (0..rows).map(|row| row * length) {
-                let (low, high) = (row..row + inner, row + off..row + off + inner);
+            let (share, [dx, dy]) = (spread.share(off), spread.offset(off));
+            let (dx, dy, back) = (dx.unsigned_abs(), dy.unsigned_abs(), (dx < 0) != (dy < 0));
+            // Columns of the lower of two rows, and of the upper one.
+            let columns = if back { [dx, 0] } else { [0, dx] };
+            let inner = width.saturating_sub(dx);
+            for row in 0..height.saturating_sub(dy) {
+                let [low, high] = [row * width + columns[0], (row + dy) * width + columns[1]];
                 for i in 0..inner {
-                    let open = shows[high.start + i] > from[low.start + i];
-                    let part = if open { (given[low.start + i] * share).floor() } else { 0.0 };
-                    sent[low.start + i] += part;
-                    came[high.start + i] += part;
+                    let open = shows[high + i] > from[low + i];
+                    let part = if open { (given[low + i] * share).floor() } else { 0.0 };
+                    sent[low + i] += part;
+                    came[high + i] += part;
                 }
                 for i in 0..inner {
-                    let open = shows[low.start + i] > from[high.start + i];
-                    let part = if open { (given[high.start + i] * share).floor() } else { 0.0 };
-                    sent[high.start + i] += part;
-                    came[low.start + i] += part;
+                    let open = shows[low + i] > from[high + i];
+                    let part = if open { (given[high + i] * share).floor() } else { 0.0 };
+                    sent[high + i] += part;
+                    came[low + i] += part;
                 }
             }
         }
@@ -209,19 +207,22 @@ impl Sides {
             self.layered[place] = Layered::Touched;
             self.two[place] = f32::from(u8::from(two));
         }
-        let axis = self.spread.axis as usize;
-        let (size, width) = (self.around.size, window.width());
-        let next = [[1, width][axis], [1, size[0]][axis]];
+        let (size, width) = (self.around.size, window.width() as isize);
+        let spread = self.spread;
         for (place, (cell, _, on_texel)) in self.places.iter().zip(contacts) {
             let local = *place as usize;
-            let at = [local % size[0], local / size[0]][axis];
-            let reach = self.spread.reach();
-            let behind =
-                (1..=reach.min(at)).map(|off| [cell - off * next[0], local - off * next[1]]);
-            let ahead = (1..=reach.min(size[axis] - 1 - at))
-                .map(|off| [cell + off * next[0], local + off * next[1]]);
+            let at = [local % size[0], local / size[0]];
+            let sides = (1..=spread.reach()).flat_map(|off| {
+                let [dx, dy] = spread.offset(off);
+                [[dx, dy], [-dx, -dy]]
+            });
+            let beside = sides.filter_map(|[dx, dy]| {
+                let [x, y] = [at[0].checked_add_signed(dx)?, at[1].checked_add_signed(dy)?];
+                let cell = cell.checked_add_signed(dy * width + dx)?;
+                (x < size[0] && y < size[1]).then_some([cell, y * size[0] + x])
+            });
             let [shows, from] = &self.heights;
-            for [cell, beside] in behind.chain(ahead) {
+            for [cell, beside] in beside {
                 let Layered::Beside(so_far) = self.layered[beside] else {
                     continue;
                 };

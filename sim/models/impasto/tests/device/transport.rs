@@ -208,7 +208,6 @@ fn shear(blade: bool) -> f64 {
 /// units to the canvas, back, and swapped. The part of a film beyond its gap fills it 16 times as fast, until 3/10
 /// of all are on the brush. A blade does only that, and takes up all that it reaches.
 fn wanted([a_b, a_c, lies, gap]: [f64; 4], travel: f64, (kept, blade): (f64, bool)) -> [f64; 3] {
-    let a_c = a_c * shear(blade);
     let goes = |times: f64| 1.0 - maulstick_num::powf(kept, times * travel);
     let free = (a_b - gap).max(0.0);
     let bridged = if blade {

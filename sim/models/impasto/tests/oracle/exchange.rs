@@ -174,7 +174,7 @@ fn wants(
     let travel = (u * u + v * v).sqrt() * f64::from(traits.cell_per_reference);
     let a_b = film(load, c.texel as usize) * f64::from(traits.film_units_per_quantum);
     let lies = lying / QUANTA_PER_UNIT;
-    let a_c = lies * f64::from(c.fraction) * rule.shear;
+    let a_c = lies * f64::from(c.fraction);
     // A unit is 25 mm.
     let gap = f64::from(c.gap) * CELL_M / 0.025;
     let mut net = algorithm_3([a_b, a_c, lies, gap], travel, rule);
@@ -197,9 +197,68 @@ fn wants(
     ]
 }
 
+/// What a texel grants: shares of the demands and the offers, their sums, and the number of cells that share it.
+struct Grant {
+    drawn: f64,
+    offered: f64,
+    sharers: f64,
+    granted: f64,
+    taken_in: f64,
+}
+
+/// What a contact's texel grants, where its cells demand and offer these sums.
+fn grant(c: &Contact, scene: &Scene, [drawn, offered, sharers]: [f64; 3]) -> Grant {
+    let there = film(&scene.load, c.texel as usize);
+    let mut granted = if drawn > there { there / drawn } else { 1.0 };
+    let room = (scene.traits.film_most - there + drawn * granted).max(0.0);
+    let mut taken_in = if offered > room { room / offered } else { 1.0 };
+    if scene.handling.transfer == Transfer::Sponge {
+        (granted, taken_in) = (1.0, 1.0);
+    }
+    Grant {
+        drawn,
+        offered,
+        sharers,
+        granted,
+        taken_in,
+    }
+}
+
+fn on_texel(c: &Contact, load: &BrushLoad, slot: usize) -> f64 {
+    let film = load.film_of(slot);
+    film.map_or(0.0, |film| f64::from(film[c.texel as usize]))
+}
+
+/// What becomes of a contact's sheets, as [`parted`] has it, and whether there may be two.
+fn sheets(c: &Contact, scene: &Scene, sides: [f64; 2], rule: Rule) -> ([f64; 4], bool, f64) {
+    let (window, load, cell) = (&scene.window, &scene.load, c.cell as usize);
+    let lying: f64 = (0..SLOTS).map(|slot| on(window, slot, cell)).sum();
+    let top: f64 = (0..SLOTS).map(|slot| above(window, slot, cell)).sum();
+    let is_there = |slot: &usize| on(window, *slot, cell) + on_texel(c, load, *slot) > 0.0;
+    let several = (0..SLOTS).filter(is_there).count() > 1;
+    let [u, v] = c.moved.map(f64::from);
+    let travel = (u * u + v * v).sqrt() * f64::from(scene.traits.cell_per_reference);
+    let reach = lying * f64::from(c.fraction) * rule.shear;
+    let dot = |of: &dyn Fn(usize) -> [f64; 2]| -> f64 {
+        (0..SLOTS)
+            .map(|slot| of(slot).iter().product::<f64>())
+            .sum()
+    };
+    let film = |slot: usize| on_texel(c, load, slot);
+    let sheet = |slot: usize| above(window, slot, cell);
+    let products = dot(&|slot| [film(slot), sheet(slot)]);
+    let squares = dot(&|slot| [film(slot); 2]) * dot(&|slot| [sheet(slot); 2]);
+    let alike = if squares > 0.0 {
+        products / squares.sqrt()
+    } else {
+        0.0
+    };
+    let work = (reach, travel, 1.0 - alike);
+    (parted([top, lying - top], sides, work), several, top)
+}
+
 pub(crate) fn oracle(contacts: &[Contact], scene: &Scene, rule: Rule) -> Expected {
     let (window, load, traits) = (&scene.window, &scene.load, &scene.traits);
-    let sponge = scene.handling.transfer == Transfer::Sponge;
     let wants: Vec<[f64; 2]> = contacts
         .iter()
         .map(|c| wants(c, window, load, traits, &scene.handling, rule))
@@ -214,92 +273,80 @@ pub(crate) fn oracle(contacts: &[Contact], scene: &Scene, rule: Rule) -> Expecte
     }
     let mut expected = Expected::default();
     for (number, (c, [given, taken])) in contacts.iter().zip(&wants).enumerate() {
-        let (cell, texel) = (c.cell as usize, c.texel as usize);
-        let [drawn, offered, sharers] = demand[&c.texel];
-        let there = film(load, texel);
-        let mut granted = if drawn > there { there / drawn } else { 1.0 };
-        let full = traits.film_most;
-        let room = (full - there + drawn * granted).max(0.0);
-        let mut taken_in = if offered > room { room / offered } else { 1.0 };
-        if sponge {
-            (granted, taken_in) = (1.0, 1.0);
-        }
+        let grant = grant(c, scene, demand[&c.texel]);
+        let there = film(load, c.texel as usize);
         expected.deposits += usize::from(*given > *taken + 1.0);
         expected.uptakes += usize::from(*taken > *given + 1.0);
         expected.swaps += usize::from(*given > 1.0 && *taken > 1.0);
-        expected.overdrawn += usize::from(*given > 1.0 && granted < 1.0 && there > 0.0);
-        expected.overfilled += usize::from(*taken > 1.0 && taken_in < 1.0 && room > 0.0);
-        let lying: f64 = (0..SLOTS).map(|slot| on(window, slot, cell)).sum();
-        let top: f64 = (0..SLOTS).map(|slot| above(window, slot, cell)).sum();
-        let of_film = |slot: usize| {
-            load.film_of(slot)
-                .map_or(0.0, |film| f64::from(film[texel]))
+        expected.overdrawn += usize::from(*given > 1.0 && grant.granted < 1.0 && there > 0.0);
+        expected.overfilled +=
+            usize::from(*taken > 1.0 && grant.taken_in < 1.0 && grant.taken_in > 0.0);
+        expected.exchange((number, c), scene, [*given, *taken], &grant, rule);
+    }
+    expected
+}
+
+impl Expected {
+    /// Adds what a contact exchanges with its texel.
+    fn exchange(
+        &mut self,
+        (number, c): (usize, &Contact),
+        scene: &Scene,
+        [given, taken]: [f64; 2],
+        grant: &Grant,
+        rule: Rule,
+    ) {
+        let (window, load) = (&scene.window, &scene.load);
+        let (cell, texel) = (c.cell as usize, c.texel as usize);
+        let there = film(load, texel);
+        let comes = if there > 0.0 {
+            given * grant.granted
+        } else {
+            0.0
         };
-        let is_there = |slot: &usize| on(window, *slot, cell) + of_film(*slot) > 0.0;
-        let several = (0..SLOTS).filter(is_there).count() > 1;
-        let [u, v] = c.moved.map(f64::from);
-        let travel = (u * u + v * v).sqrt() * f64::from(traits.cell_per_reference);
-        let comes = if there > 0.0 { given * granted } else { 0.0 };
-        let sides = [comes, taken * taken_in];
-        let reach = lying * f64::from(c.fraction) * rule.shear;
-        let dot = |of: &dyn Fn(usize) -> [f64; 2]| -> f64 {
-            (0..SLOTS)
-                .map(|slot| of(slot).iter().product::<f64>())
-                .sum()
-        };
-        let sheet = |slot: usize| above(window, slot, cell);
-        let products = dot(&|slot| [of_film(slot), sheet(slot)]);
-        let squares = dot(&|slot| [of_film(slot); 2]) * dot(&|slot| [sheet(slot); 2]);
-        let differs = 1.0
-            - if squares > 0.0 {
-                products / squares.sqrt()
-            } else {
-                0.0
-            };
-        let work = (reach, travel, differs);
-        let [from_top, from_body, kept, fits] = parted([top, lying - top], sides, work);
-        expected.sheets[0] += usize::from(top > 100.0 && from_top > 0.0 && from_body < 1e-9);
-        expected.sheets[1] += usize::from(top > 100.0 && from_top > 0.0 && from_body > 1e-6);
-        expected.sheets[2] += usize::from(several && top > 100.0 && kept < 0.9);
+        let sides = [comes, taken * grant.taken_in];
+        let ([from_top, from_body, kept, fits], several, top) = sheets(c, scene, sides, rule);
+        self.sheets[0] += usize::from(top > 100.0 && from_top > 0.0 && from_body < 1e-9);
+        self.sheets[1] += usize::from(top > 100.0 && from_top > 0.0 && from_body > 1e-6);
+        self.sheets[2] += usize::from(several && top > 100.0 && kept < 0.9);
         for slot in 0..SLOTS {
-            let of_film = of_film(slot);
+            let of_film = on_texel(c, load, slot);
             let (of_cell, of_top) = (on(window, slot, cell), above(window, slot, cell));
-            let to_canvas = given * granted * of_film / there.max(1.0);
+            let to_canvas = given * grant.granted * of_film / there.max(1.0);
             let to_brush = from_top * of_top + from_body * (of_cell - of_top);
-            // The demand and the transfer from each sheet are truncated; a sum of truncated demands lacks up to a quantum for each
-            // cell of the texel, and a film's free capacity changes with both. Single precision adds 10⁻⁶.
+            // The demand and the transfer from each sheet are truncated; a sum of truncated demands lacks up to a
+            // quantum for each cell of the texel, and a film's free capacity changes with both. Single precision adds
+            // 10⁻⁶.
             let shared = |granted: f64, sum: f64, own: f64| {
-                let bound = (granted < 1.0).then(|| 2.0 * sharers / sum * own);
+                let bound = (granted < 1.0).then(|| 2.0 * grant.sharers / sum * own);
                 bound.unwrap_or_default()
             };
             let off = |moved: f64, shared: f64| {
                 let bound = (moved > 0.0).then_some(3.0 + shared + 4e-6 * moved);
                 bound.unwrap_or_default()
             };
-            let of_given = off(to_canvas, shared(granted, drawn, *given));
-            expected.given.insert((slot, number), [to_canvas, of_given]);
-            let bound = of_given + off(to_brush, shared(taken_in, offered, *taken));
+            let of_given = off(to_canvas, shared(grant.granted, grant.drawn, given));
+            self.given.insert((slot, number), [to_canvas, of_given]);
+            let bound = of_given + off(to_brush, shared(grant.taken_in, grant.offered, taken));
             let put =
                 |to: &mut [f64; 2], moved: f64| (to[0], to[1]) = (to[0] + moved, to[1] + bound);
             let onto = to_canvas - to_brush;
             put(
-                expected.cells.entry((slot, cell)).or_insert([of_cell, 0.0]),
+                self.cells.entry((slot, cell)).or_insert([of_cell, 0.0]),
                 onto,
             );
             // Single precision tells mixtures that are nearly alike apart by 10⁻⁴.
             let left = (of_top - from_top * of_top) * kept + to_canvas;
             let upper = if several { left * fits } else { 0.0 };
-            expected
-                .uppers
-                .insert((slot, cell), [upper, bound + 2.0 + 2e-4 * upper]);
-            let film = expected.films.entry((slot, texel));
+            let upper = [upper, bound + 2.0 + 2e-4 * upper];
+            self.uppers.insert((slot, cell), upper);
+            let film = self.films.entry((slot, texel));
             let film = film.or_insert([of_film, 0.0]);
-            if !sponge {
+            if scene.handling.transfer != Transfer::Sponge {
                 put(film, -onto);
             }
         }
     }
-    expected
 }
 
 fn agrees(scene: &Scene, expected: &Expected) -> bool {
@@ -343,33 +390,54 @@ fn lay_on_top(scene: &mut Scene, seed: u64) {
     }
 }
 
+/// A scene of the test, its footprint and the rule of its head.
+fn prepared(seed: usize) -> (Scene, Footprint, Rule) {
+    let mut scene = Scene::new(seed as u64);
+    let mut footprint = Footprint::default();
+    footprint.find(&mut scene.step());
+    scene.handling.transfer = match seed {
+        24..28 => Transfer::Sponge,
+        28..32 => Transfer::Marker { flow: 0.0004 },
+        _ => Transfer::Paint,
+    };
+    if seed.is_multiple_of(4) {
+        scene.handling.most = 60_000.0;
+    }
+    if seed % 2 == 1 {
+        crowd(&mut footprint.contacts);
+        scene.traits.film_most *= 0.05;
+    }
+    let (kind, rule) = RULES[[0, 1, 0, 1, 2][seed / 8]];
+    let file = BrushFile::library(kind).expect(kind);
+    scene.traits.exchanging = BrushTraits::of(&file, CELL_M, 1.0).exchanging;
+    if seed % 5 != 4 {
+        lay_on_top(&mut scene, seed as u64);
+    }
+    scene.to.press = PRESS;
+    (scene, footprint, rule)
+}
+
+/// Faults of a count, and of a sheet, differ.
+fn faults_are_told(scene: &mut Scene, expected: &Expected) {
+    let cells = expected.cells.iter();
+    let most = cells.max_by(|a, b| a.1[1].total_cmp(&b.1[1]));
+    let (&(slot, cell), [_, bound]) = most.expect("contacts");
+    let fault = 10.0 * bound.ceil() as f32;
+    scene.window.plane_mut(slot)[cell] += fault;
+    assert!(!agrees(scene, expected), "a fault passes");
+    scene.window.plane_mut(slot)[cell] -= fault;
+    let (&(slot, cell), [_, bound]) = expected.uppers.iter().next().expect("contacts");
+    let [_, upper] = scene.window.sheets_mut(slot);
+    upper[cell] += 10.0 * bound.ceil() as f32;
+    assert!(!agrees(scene, expected), "a fault in a sheet passes");
+}
+
 #[test]
 fn paint_goes_both_ways_as_algorithm_3_says() {
     let mut seen = Expected::default();
     let (mut told, mut by_shares) = (0, 0);
     for seed in 0..40 {
-        let mut scene = Scene::new(seed as u64);
-        let mut footprint = Footprint::default();
-        footprint.find(&mut scene.step());
-        scene.handling.transfer = match seed {
-            24..28 => Transfer::Sponge,
-            28..32 => Transfer::Marker { flow: 0.0004 },
-            _ => Transfer::Paint,
-        };
-        if seed % 4 == 0 {
-            scene.handling.most = 60_000.0;
-        }
-        if seed % 2 == 1 {
-            crowd(&mut footprint.contacts);
-            scene.traits.film_most *= 0.05;
-        }
-        let (kind, rule) = RULES[[0, 1, 0, 1, 2][seed / 8]];
-        let file = BrushFile::library(kind).expect(kind);
-        scene.traits.exchanging = BrushTraits::of(&file, CELL_M, 1.0).exchanging;
-        if seed % 5 != 4 {
-            lay_on_top(&mut scene, seed as u64);
-        }
-        scene.to.press = PRESS;
+        let (mut scene, footprint, rule) = prepared(seed);
         let before = scene.counts();
         let expected = oracle(&footprint.contacts, &scene, rule);
         let kept = 0.99 * rule.kept;
@@ -392,42 +460,19 @@ fn paint_goes_both_ways_as_algorithm_3_says() {
             assert_eq!(counted, film(&scene.load, texel), "counted afresh");
         }
         seen.count(&expected);
-        let most = expected
-            .cells
-            .iter()
-            .max_by(|a, b| a.1[1].total_cmp(&b.1[1]));
-        let (&(slot, cell), [_, bound]) = most.expect("contacts");
-        let fault = 10.0 * bound.ceil() as f32;
-        scene.window.plane_mut(slot)[cell] += fault;
-        assert!(!agrees(&scene, &expected), "a fault in scene {seed} passes");
-        scene.window.plane_mut(slot)[cell] -= fault;
-        let (&(slot, cell), [_, bound]) = expected.uppers.iter().next().expect("contacts");
-        let [_, upper] = scene.window.sheets_mut(slot);
-        upper[cell] += 10.0 * bound.ceil() as f32;
-        assert!(!agrees(&scene, &expected), "a fault in a sheet passes");
+        faults_are_told(&mut scene, &expected);
     }
+    let shares = (told, by_shares);
     assert!(
         10 * told > 9 * by_shares,
-        "another share passes: {told} of {by_shares} told apart"
+        "another share passes: {shares:?}"
     );
-    assert!(
-        seen.deposits > 1000 && seen.uptakes > 1000,
-        "{} {}",
-        seen.deposits,
-        seen.uptakes
-    );
-    assert!(seen.swaps > 1000, "{}", seen.swaps);
-    assert!(
-        seen.sheets.iter().all(|count| *count > 200),
-        "{:?}",
-        seen.sheets
-    );
-    assert!(
-        seen.overdrawn > 20 && seen.overfilled > 20,
-        "{} {}",
-        seen.overdrawn,
-        seen.overfilled
-    );
+    let often = [seen.deposits, seen.uptakes, seen.swaps];
+    assert!(often.iter().all(|count| *count > 1000), "{often:?}");
+    let sheets = seen.sheets;
+    assert!(sheets.iter().all(|count| *count > 200), "{sheets:?}");
+    let bound = [seen.overdrawn, seen.overfilled];
+    assert!(bound.iter().all(|count| *count > 20), "{bound:?}");
 }
 
 /// A nearly full cell takes only what fits.

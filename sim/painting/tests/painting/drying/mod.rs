@@ -181,7 +181,9 @@ fn a_stroke_meanwhile_is_one_step_and_dries_in_what_is_left() {
     let [wet, _] = counts(&mut sequencer);
     assert_eq!(sum(&wet), 0, "what was laid late is dry in time");
     assert_eq!(sequencer.painting().history_depth().0, steps + 2);
-    assert!(farthest(&colour, &colours(&mut sequencer)) < 1e-5);
+    let worst = farthest(&colour, &colours(&mut sequencer));
+    println!("worst {worst:e}, {} links", depth(&sequencer));
+    assert!(worst < 1e-5, "{worst}");
     assert_eq!(depth(&sequencer), 2, "another mixture, another link");
     assert_eq!(sequencer.painting().scene().layers.len(), 1);
 }

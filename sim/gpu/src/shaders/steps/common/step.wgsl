@@ -88,9 +88,8 @@ struct Step {
     seep_along: f32,
     // Quanta of a texel's film that cling to a strip.
     clings: f32,
-    // Bit 0: 0 where a deposit is spread along x, 1 along y; from bit 1 the cells over which it is spread; from bit 8
-    // whether the surface ends at the window's left, right, lower, upper limit; from bit 16 the parts in which paint
-    // moves.
+    // Spread of maulstick-model and more: bit 0 the axis, from bit 1 the cells along it, from bit 8 whether the surface ends
+    // at the window's left, right, lower, upper limit, from bit 12 the parts in which paint moves, from bit 24 the slope.
     spread: u32,
     // 1 where as many planes follow with what is in the upper sheet.
     sheets: u32,

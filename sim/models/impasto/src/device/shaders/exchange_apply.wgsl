@@ -80,9 +80,12 @@ fn beside(i: u32, reach: u32) -> array<u32, 8> {
     let low = vec2<i32>(around.low);
     let high = vec2<i32>(around.high);
     let at = vec2<i32>(vec2(i % step.width, i / step.width));
+    let slope = i32(step.spread) >> 24u;
     for (var n = 0u; n < 2u * reach; n++) {
-        let way = select(-1, 1, (n & 1u) == 1u) * i32(n / 2u + 1u);
-        let place = at + select(vec2(way, 0), vec2(0, way), (step.spread & 1u) == 1u);
+        let off = i32(n / 2u + 1u);
+        let aside = (off * slope + 32) >> 6u;
+        let way = select(-1, 1, (n & 1u) == 1u);
+        let place = at + way * select(vec2(off, aside), vec2(aside, off), (step.spread & 1u) == 1u);
         let open = all(place >= low) && all(place < high);
         found[n] = select(NONE, u32(place.y) * step.width + u32(place.x), open);
     }
@@ -127,7 +130,7 @@ fn over_border(i: u32, total: f32) -> f32 {
     let at = vec2(step.from_x + i % step.width, step.from_y + i / step.width);
     let limit = vec2(step.limit_x, step.limit_y);
     let contact = contacts[i];
-    let parts = f32(step.spread >> 16u);
+    let parts = f32(step.spread >> 12u & 4095u);
     let pressed = contact.squish * max(contact.reach, 0.0) * contact.cover;
     var share = 0.0;
     for (var axis = 0u; axis < 2u; axis++) {

@@ -20,14 +20,8 @@ pub(super) struct Meetings {
 }
 
 impl Meetings {
-    /// Meetings of contacts, which shear a share of what they reach; what lies on their cells is known.
-    pub(super) fn of(
-        &mut self,
-        contacts: &[Contact],
-        films: &[u32],
-        traits: &BrushTraits,
-        shear: f32,
-    ) {
+    /// Meetings of contacts; what lies on their cells is known.
+    pub(super) fn of(&mut self, contacts: &[Contact], films: &[u32], traits: &BrushTraits) {
         let on_brush = |contact: &Contact| {
             films[contact.texel as usize] as f32 * traits.film_units_per_quantum
         };
@@ -46,7 +40,7 @@ impl Meetings {
             .extend(contacts.iter().map(|contact| contact.cover));
         self.on_brush.extend(contacts.iter().map(on_brush));
         self.fraction
-            .extend(contacts.iter().map(|contact| shear * contact.fraction));
+            .extend(contacts.iter().map(|contact| contact.fraction));
         let gap = |contact: &Contact| contact.gap * traits.units_per_cell;
         self.gap.extend(contacts.iter().map(gap));
     }
@@ -63,7 +57,7 @@ struct Meeting {
     on_brush: f32,
     /// Wet paint on the cell, quanta.
     lying: f32,
-    /// Share of it that the brush reaches and shears.
+    /// Share of it that the brush reaches.
     fraction: f32,
     /// Gap between brush and paint, units.
     gap: f32,
