@@ -128,12 +128,16 @@ impl Tile {
         }
         let planes = wet.planes.into_iter().enumerate();
         let planes = planes.filter_map(|(slot, plane)| Some((slot, plane?.into())));
-        // What lay on top of a layer lies on top again, unless other paint covers it.
+        // What lay on top of the newest layer lies on top again, unless the tile has other wet paint.
         let newest = links.first()?.layer().planes.get();
-        let on_top = (newest.own().iter())
-            .filter(|own| self.wet_page().is_none() && sheet::slot_of(own.shape).is_some());
+        let notes = newest.own().iter().filter(|_| self.wet_page().is_none());
+        let on_top = notes.filter_map(|own| {
+            let quanta = sheet::quanta(&own.bytes).zip(within);
+            let quanta = quanta.map(|(quanta, within)| if *within { quanta } else { 0.0 });
+            Some(sheet::note(sheet::slot_of(own.shape)?, quanta))
+        });
         let before = self.wet();
-        let own = before.own().iter().chain(on_top).cloned();
+        let own = before.own().iter().cloned().chain(on_top);
         let planes = painted(planes).with_own(own);
         Some(Rewet {
             tile: Self::paged(pager, planes, dry, Some(self)),

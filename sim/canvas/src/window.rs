@@ -107,8 +107,12 @@ impl Window {
         for plane in wet.own() {
             if let Some(slot) = sheet::slot_of(plane.shape) {
                 let to = self.upper[slot].get_or_insert_with(new);
+                let Some(all) = &self.wet[slot] else {
+                    continue;
+                };
                 for (at, quanta) in sheet::quanta(&plane.bytes).enumerate() {
-                    to[start + at / TILE * width + at % TILE] = quanta;
+                    let cell = start + at / TILE * width + at % TILE;
+                    to[cell] = quanta.min(all[cell]);
                 }
                 continue;
             }
@@ -378,8 +382,11 @@ impl Window {
                 .iter()
                 .enumerate()
                 .filter_map(|(slot, plane)| Some((slot, Arc::from(cells(plane.as_ref()?)))));
-            let upper = self.upper.iter().enumerate().filter_map(|(slot, plane)| {
-                Some(sheet::note(slot, cells(plane.as_ref()?).into_iter()))
+            let both = self.upper.iter().zip(&self.wet).enumerate();
+            let upper = both.filter_map(|(slot, (upper, plane))| {
+                let [upper, plane] = [upper.as_ref()?, plane.as_ref()?].map(cells);
+                let noted = upper.into_iter().zip(plane);
+                Some(sheet::note(slot, noted.map(|(upper, all)| upper.min(all))))
             });
             let own = self.own.iter().map(|(shape, plane)| {
                 let cell = shape.cell_bytes();

@@ -75,7 +75,7 @@ impl DeviceLayout {
         cells * self.bytes_by_cell() as u64 <= MOST_BYTES as u64
     }
 
-    /// A cell of the grid takes up to 32 bytes, of the window 4 a paint.
+    /// A cell of the grid takes up to 32 bytes, of the window 4 a plane.
     fn bytes_by_cell(&self) -> usize {
         (4 * self.planes_in_use()).max(32)
     }

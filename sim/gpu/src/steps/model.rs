@@ -195,7 +195,8 @@ impl PaintModel for GpuModel {
         };
         session.kept.keep(step);
         session.uncounted |= step.lasting || step.handling.transfer == Transfer::Sponge;
-        session.overhangs |= step.window.borders().as_flattened().contains(&true);
+        let borders = step.window.borders();
+        session.overhangs |= step.handling.push && borders.as_flattened().contains(&true);
         session.rows = if session.rows.is_empty() {
             rows
         } else {

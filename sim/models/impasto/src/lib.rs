@@ -93,7 +93,7 @@
 //!   hand's length. A brush that hardly presses glides: it shears by the square of its press.
 //! - Wet paint lies in two sheets. What is laid last lies on top: a light stroke covers what is wet, broken where it
 //!   starves, and takes from the upper sheet alone. Bristles that plough through work the two into one. Light sees body
-//!   and sheet in order. A cell of one paint has one sheet, and only that is paid for.
+//!   and sheet in order. Where there is one paint there is one sheet, and one is paid for.
 //! - A deposit is spread along its step, over cells that the bristles touch, too; otherwise every second row would have
 //!   another bristle as its last. What is pushed over the border of the surface is wiped off.
 //! - A badger exchanges more than it takes up, so it softens. A blade floats on its paint by its pressure, takes up

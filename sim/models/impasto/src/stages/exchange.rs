@@ -225,8 +225,7 @@ impl Exchange {
         let layered = self.swap(slot, step.window);
         if self.sides.are_given() {
             if layered {
-                let [_, upper] = step.window.sheets_mut(slot);
-                self.sides.sink(upper);
+                self.sides.sink(step.window.sheets_mut(slot));
             }
             if on_brush {
                 self.spread(slot, step.window);
@@ -415,9 +414,8 @@ impl Share {
         let Some(mut sheets) = self.sheets.take() else {
             return;
         };
-        let differ: Vec<f32> = sheets.differ().collect();
         let meetings = &self.meetings;
-        sheets.part(|i, top| {
+        sheets.part(|i, top, differs| {
             let comes = self.comes(i, granted);
             Sheet {
                 top,
@@ -429,7 +427,7 @@ impl Share {
                 leaves: self.leaves[i],
                 covered: match sides {
                     Some(sides) => sides.covered(self.first + i),
-                    None => differ[i] * comes,
+                    None => differs * comes,
                 },
             }
         });

@@ -50,13 +50,17 @@ impl Overhang {
         self.0.extend(shares.filter(|(_, share)| *share > 0.0));
     }
 
-    /// Wipes it off, and counts it.
-    pub(crate) fn wipe(&mut self, step: &mut Step<'_>) -> Counts {
-        let mut wiped = [0; SLOTS];
+    /// Weighs what of it is loose, before the exchange.
+    pub(crate) fn weigh(&mut self, step: &Step<'_>) {
         for (cell, share) in &mut self.0 {
             let total = step.window.total(*cell);
             *share *= (total - step.stain).max(0.0) / total.max(1.0);
         }
+    }
+
+    /// Wipes it off, and counts it.
+    pub(crate) fn wipe(&self, step: &mut Step<'_>) -> Counts {
+        let mut wiped = [0; SLOTS];
         if self.0.is_empty() {
             return wiped;
         }

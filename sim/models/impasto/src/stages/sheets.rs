@@ -183,11 +183,12 @@ impl Sheets {
         self.found.iter().map(Found::differs)
     }
 
-    /// Parts them; `sheet` completes what is known of each contact, by its number and the quanta of its upper sheet.
-    pub(crate) fn part(&mut self, sheet: impl Fn(usize, f32) -> Sheet) {
+    /// Parts them; `sheet` completes what is known of each contact, by its number, the quanta of its upper sheet and how
+    /// far the texel's mixture is from it.
+    pub(crate) fn part(&mut self, sheet: impl Fn(usize, f32, f32) -> Sheet) {
         self.parted.iter_mut().for_each(Vec::clear);
         for (i, found) in self.found.iter().enumerate() {
-            let [from_top, from_body, kept, fits] = parted(&sheet(i, found.top));
+            let [from_top, from_body, kept, fits] = parted(&sheet(i, found.top, found.differs()));
             let fits = if found.only == SEVERAL { fits } else { 0.0 };
             let planes = self.parted.iter_mut();
             let parted = planes.zip([from_top, from_body, kept, fits]);

@@ -6,7 +6,7 @@ use maulstick_canvas::window::{Area, Window};
 use maulstick_model::footprint::Footprint;
 use maulstick_model::interface::Step;
 use maulstick_model::spread::Spread;
-use maulstick_num::select::larger;
+use maulstick_num::select::{larger, smaller};
 use maulstick_num::wide;
 
 use super::sheets::{NONE, SEVERAL, besides, left_under, only_on};
@@ -246,9 +246,10 @@ impl Sides {
     }
 
     /// Lets the upper sheet of a paint beside the contacts sink as other paint comes over it.
-    pub(crate) fn sink(&self, upper: &mut [f32]) {
+    pub(crate) fn sink(&self, [plane, upper]: [&mut Vec<f32>; 2]) {
         for (cell, local) in &self.beside {
-            upper[*cell] = (upper[*cell] * left_under(self.covered[*local])).floor();
+            let above = smaller(upper[*cell], plane[*cell]);
+            upper[*cell] = (above * left_under(self.covered[*local])).floor();
         }
     }
 

@@ -60,6 +60,7 @@ impl PaintModel for Impasto {
                         );
                     }
                 }
+                self.overhang.weigh(step);
                 report.from_nowhere = self.exchange.run(footprint, step).into();
                 report.lifted = self.overhang.wipe(step).into();
                 flow(step);

@@ -88,8 +88,9 @@ struct Step {
     seep_along: f32,
     // Quanta of a texel's film that cling to a strip.
     clings: f32,
-    // Spread of maulstick-model and more: bit 0 the axis, from bit 1 the cells along it, from bit 8 whether the surface ends
-    // at the window's left, right, lower, upper limit, from bit 12 the parts in which paint moves, from bit 24 the slope.
+    // Spread of maulstick-model and more: bit 0 the axis, from bit 1 the cells along it, from bit 8 whether the surface
+    // ends at the window's left, right, lower, upper limit, from bit 12 the parts in which paint moves, from bit 24 the
+    // slope.
     spread: u32,
     // 1 where as many planes follow with what is in the upper sheet.
     sheets: u32,
@@ -146,7 +147,8 @@ const MARKER = 2u;
 // PER_LOG.
 @group(0) @binding(9) var<storage, read_write> keys: array<atomic<u32>>;
 @group(0) @binding(10) var<storage, read_write> contacts: array<Contact>;
-// Velocities through the right and the upper face of each cell of the grid.
+// Velocities through the right and the upper face of each cell of the grid; from the requests on, for a contact, how far
+// its mixture is from that of the upper sheet, and its paints.
 @group(0) @binding(11) var<storage, read_write> faces: array<vec2<f32>>;
 // By cell of the grid: all paint, all paint between the passes of the advection, height of the surface that catches
 // paint, share of thinner, height of the ride.

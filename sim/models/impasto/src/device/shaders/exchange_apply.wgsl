@@ -49,12 +49,12 @@ fn going(i: u32, texel: u32) -> Going {
 // maulstick-model).
 fn reach_of_spread() -> u32 {
     let fullest = bitcast<f32>(atomicLoad(&stats[stat(FULLEST)]));
-    let length = step.spread >> 1u & 127u;
+    let length = (step.spread >> 1u) & 127u;
     return select(0u, length / 2u, length > 1u && fullest <= TAKES * step.cell_max);
 }
 
 fn part_at(off: u32) -> f32 {
-    let length = step.spread >> 1u & 127u;
+    let length = (step.spread >> 1u) & 127u;
     return select(1.0, 0.5, length % 2u == 0u && off == length / 2u) / f32(length);
 }
 
@@ -130,13 +130,13 @@ fn over_border(i: u32, total: f32) -> f32 {
     let at = vec2(step.from_x + i % step.width, step.from_y + i / step.width);
     let limit = vec2(step.limit_x, step.limit_y);
     let contact = contacts[i];
-    let parts = f32(step.spread >> 12u & 4095u);
+    let parts = f32((step.spread >> 12u) & 4095u);
     let pressed = contact.squish * max(contact.reach, 0.0) * contact.cover;
     var share = 0.0;
     for (var axis = 0u; axis < 2u; axis++) {
-        let ends = step.spread >> (8u + 2u * axis) & 3u;
+        let ends = (step.spread >> (8u + 2u * axis)) & 3u;
         let low = (ends & 1u) == 1u && at[axis] == 0u;
-        if low || (ends & 2u) == 2u && at[axis] + 1u == limit[axis] {
+        if low || ((ends & 2u) == 2u && at[axis] + 1u == limit[axis]) {
             let moved = select(1.0, -1.0, low) * contact.moved[axis];
             share += clamp(parts * (contact.follows * moved + pressed), 0.0, 1.0);
         }
@@ -192,7 +192,7 @@ fn exchange_apply(@builtin(global_invocation_id) id: vec3<u32>) {
         if layered {
             let note = faces[giver_at];
             covered += part * came.quanta.x * note.x;
-            comes_beside = besides(comes_beside, bitcast<u32>(note.y));
+            comes_beside = besides(comes_beside, as_paints(note.y));
         }
     }
     if !touched && !gets {
@@ -206,7 +206,7 @@ fn exchange_apply(@builtin(global_invocation_id) id: vec3<u32>) {
         only = NONE;
         if layered {
             covered += (1.0 - open) * own.quanta.x * faces[i].x;
-            only = bitcast<u32>(faces[i].y);
+            only = as_paints(faces[i].y);
         }
     }
     // Lasting paint loses only the amount that arrives.

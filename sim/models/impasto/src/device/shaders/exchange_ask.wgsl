@@ -38,7 +38,7 @@ fn note_sheet(i: u32, texel: u32) {
         sums += vec3(film * film, above * above, film * above);
         only = besides(only, select(NONE, paint, film > 0.0));
     }
-    faces[i] = vec2(1.0 - sums.z / max(sqrt(sums.x * sums.y), 1.0), bitcast<f32>(only));
+    faces[i] = vec2(1.0 - sums.z / max(sqrt(sums.x * sums.y), 1.0), as_number(only));
 }
 
 @compute @workgroup_size(256)

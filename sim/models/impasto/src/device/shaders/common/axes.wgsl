@@ -19,3 +19,12 @@ fn besides(one: u32, other: u32) -> u32 {
 fn upper_of(paint: u32, cell: u32) -> u32 {
     return (step.planes + paint) * step.plane + cell;
 }
+
+// The paints as a number that a buffer of numbers holds, and back.
+fn as_number(only: u32) -> f32 {
+    return select(select(f32(only), -2.0, only == SEVERAL), -1.0, only == NONE);
+}
+
+fn as_paints(number: f32) -> u32 {
+    return select(select(u32(max(number, 0.0)), SEVERAL, number == -2.0), NONE, number == -1.0);
+}
