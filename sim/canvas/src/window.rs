@@ -107,12 +107,8 @@ impl Window {
         for plane in wet.own() {
             if let Some(slot) = sheet::slot_of(plane.shape) {
                 let to = self.upper[slot].get_or_insert_with(new);
-                let Some(all) = &self.wet[slot] else {
-                    continue;
-                };
                 for (at, quanta) in sheet::quanta(&plane.bytes).enumerate() {
-                    let cell = start + at / TILE * width + at % TILE;
-                    to[cell] = quanta.min(all[cell]);
+                    to[start + at / TILE * width + at % TILE] = quanta;
                 }
                 continue;
             }
@@ -382,11 +378,8 @@ impl Window {
                 .iter()
                 .enumerate()
                 .filter_map(|(slot, plane)| Some((slot, Arc::from(cells(plane.as_ref()?)))));
-            let both = self.upper.iter().zip(&self.wet).enumerate();
-            let upper = both.filter_map(|(slot, (upper, plane))| {
-                let [upper, plane] = [upper.as_ref()?, plane.as_ref()?].map(cells);
-                let noted = upper.into_iter().zip(plane);
-                Some(sheet::note(slot, noted.map(|(upper, all)| upper.min(all))))
+            let upper = self.upper.iter().enumerate().filter_map(|(slot, plane)| {
+                Some(sheet::note(slot, cells(plane.as_ref()?).into_iter()))
             });
             let own = self.own.iter().map(|(shape, plane)| {
                 let cell = shape.cell_bytes();
