@@ -40,6 +40,11 @@ pub trait ShowPaint: Debug + Send + Sync {
         Colouring::Films
     }
 
+    /// True for a model whose wet paint may lie in two sheets (`maulstick_canvas::sheet`).
+    fn has_sheets(&self) -> bool {
+        false
+    }
+
     /// Thickness of the paints of wet or dry planes, seen from above.
     fn films(&self, planes: &Planes) -> Films {
         counted_films(planes)
@@ -81,8 +86,12 @@ pub fn painted_height(shown: &(impl ShowPaint + ?Sized), tile: &Tile) -> Vec<f32
     height(&shown.films(&tile.wet()), dry)
 }
 
-/// Paint displayed as films of its counts by slot.
+/// Paint displayed as films of its counts by slot, in one sheet or two.
 #[derive(Clone, Copy, Debug)]
 pub struct Counted;
 
-impl ShowPaint for Counted {}
+impl ShowPaint for Counted {
+    fn has_sheets(&self) -> bool {
+        true
+    }
+}

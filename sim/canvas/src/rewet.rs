@@ -84,9 +84,10 @@ impl Wet {
 
 impl Tile {
     /// The tile with its layers from number `least` on rewetted in the cells that are `within`; `None` where that
-    /// changes nothing. The model's own planes stay where they are.
+    /// changes nothing. The model's own planes stay where they are, but where the model keeps `sheets` the newest layer's
+    /// come back with it.
     #[must_use]
-    pub fn rewet(&self, least: u32, within: &[bool]) -> Option<Rewet> {
+    pub fn rewet(&self, least: u32, within: &[bool], sheets: bool) -> Option<Rewet> {
         let mut links = Vec::new();
         let mut next = self.dry();
         while let Some(link) = next
@@ -130,7 +131,10 @@ impl Tile {
         let planes = planes.filter_map(|(slot, plane)| Some((slot, plane?.into())));
         // What lay on top of the newest layer lies on top again, unless the tile has other wet paint.
         let newest = links.first()?.layer().planes.get();
-        let notes = newest.own().iter().filter(|_| self.wet_page().is_none());
+        let notes = newest
+            .own()
+            .iter()
+            .filter(|_| sheets && self.wet_page().is_none());
         let on_top = notes.filter_map(|own| {
             let quanta = sheet::quanta(&own.bytes).zip(within);
             let quanta = quanta.map(|(quanta, within)| if *within { quanta } else { 0.0 });
@@ -181,7 +185,7 @@ mod tests {
     fn layers_become_wet_from_the_newest_down_and_no_quantum_is_lost() {
         let tile = tile();
         let everywhere = vec![true; TILE_CELLS];
-        let one = tile.rewet(2, &everywhere).expect("a layer");
+        let one = tile.rewet(2, &everywhere, true).expect("a layer");
         assert_eq!(all(&one.tile), all(&tile));
         assert_eq!(one.full_cells, 1, "cell 9 is full");
         let stack = one.tile.dry().expect("the lower one");
@@ -197,7 +201,7 @@ mod tests {
         // Each of two paints is truncated to whole quanta.
         assert!(wet <= 1 << 24 && wet + 2 > 1 << 24, "{wet}");
         assert_eq!(left + wet, (1 << 24) + 5 + 12);
-        let both = tile.rewet(0, &everywhere).expect("layers");
+        let both = tile.rewet(0, &everywhere, true).expect("layers");
         assert_eq!(all(&both.tile), all(&tile));
         let stack = both.tile.dry().expect("cell 9 of both");
         assert_eq!(stack.depth(), 2);
@@ -214,14 +218,14 @@ mod tests {
     fn beside_the_region_all_stays_and_shares_its_pages() {
         let tile = tile();
         assert_eq!(
-            tile.rewet(3, &vec![true; TILE_CELLS]),
+            tile.rewet(3, &vec![true; TILE_CELLS], true),
             None,
             "no such layer"
         );
-        assert_eq!(tile.rewet(0, &vec![false; TILE_CELLS]), None);
+        assert_eq!(tile.rewet(0, &vec![false; TILE_CELLS], true), None);
         let mut within = vec![false; TILE_CELLS];
         within[100] = true;
-        let part = tile.rewet(2, &within).expect("a cell");
+        let part = tile.rewet(2, &within, true).expect("a cell");
         assert_eq!(all(&part.tile), all(&tile));
         let (now, before) = (part.tile.dry().expect("dry"), tile.dry().expect("dry"));
         assert!(Arc::ptr_eq(
@@ -236,7 +240,7 @@ mod tests {
             .count();
         assert_eq!(differ, 1);
         let nothing_left =
-            Tile::of_pages(None, part.tile.dry().cloned()).rewet(0, &vec![true; TILE_CELLS]);
+            Tile::of_pages(None, part.tile.dry().cloned()).rewet(0, &vec![true; TILE_CELLS], true);
         assert_eq!(nothing_left.expect("all").tile.dry(), None);
     }
 }

@@ -53,6 +53,12 @@ pub(crate) fn are_noted(planes: &Planes) -> bool {
     planes.own().iter().any(|own| slot_of(own.shape).is_some())
 }
 
+/// Own planes of paint that is to be one sheet.
+pub fn without_notes(planes: &Planes) -> impl Iterator<Item = OwnPlane> + '_ {
+    let own = planes.own().iter().cloned();
+    own.filter(|own| slot_of(own.shape).is_none())
+}
+
 /// Quanta of a paint in the upper sheet, by cell; `None` without a note on it.
 fn noted(planes: &Planes, slot: usize) -> Option<Vec<f32>> {
     let mut notes = planes.own().iter();
@@ -224,8 +230,11 @@ mod tests {
         assert!(dried.wet_page().is_none());
         let planes = dried.dry().expect("dried").layer().planes.get();
         assert!(sheets(&planes).is_some());
-        let again = dried.rewet(1, &[true; TILE_CELLS]).expect("dried").tile;
-        assert_eq!(*again.wet(), *before.wet());
+        let again = dried.rewet(1, &[true; TILE_CELLS], true);
+        assert_eq!(*again.expect("dried").tile.wet(), *before.wet());
+        let one = dried.rewet(1, &[true; TILE_CELLS], false);
+        let one = one.expect("dried").tile.wet();
+        assert!(sheets(&one).is_none() && one.to_vec() == before.wet().to_vec());
     }
 
     #[test]

@@ -305,7 +305,10 @@ mod tests {
         let stack = whole.dry().expect("dried");
         assert_eq!(stack.layer().planes.get().own().len(), 1);
         assert_eq!(stack.counts()[2], 1000 << 12);
-        let back = whole.rewet(0, &[true; TILE_CELLS]).expect("dried").tile;
+        let back = whole
+            .rewet(0, &[true; TILE_CELLS], false)
+            .expect("dried")
+            .tile;
         assert_eq!(back.counts()[2], 1000 << 12);
     }
 }

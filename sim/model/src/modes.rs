@@ -19,6 +19,17 @@ pub fn vacuum(footprint: &Footprint, step: &mut Step<'_>) -> Counts {
             lifted[slot] += goes as u64;
         }
     }
+    if step.window.has_sheets() {
+        for slot in 0..SLOTS {
+            if step.window.upper(slot).is_some() {
+                let [plane, upper] = step.window.sheets_mut(slot);
+                for contact in &footprint.contacts {
+                    let cell = contact.cell as usize;
+                    upper[cell] = upper[cell].min(plane[cell]);
+                }
+            }
+        }
+    }
     if step.load.total() > 0 {
         add(&mut lifted, &step.load.take_all());
     }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
+use maulstick_canvas::sheet::sheets;
 use maulstick_canvas::tile::TileId;
 use maulstick_painting::edits::{Convert, Dry};
 use maulstick_painting::picture::picture;
@@ -63,6 +64,29 @@ fn painted(model: &str) -> Painting {
         painting.state(BRUSH, 1, &state(solves)).expect("it fits");
     }
     painting
+}
+
+/// True if wet paint lies in two sheets somewhere on the canvas.
+fn has_sheets(painting: &mut Painting) -> bool {
+    painting.commit();
+    let store = painting.store(CANVAS).expect("the canvas");
+    let mut tiles = store
+        .iter()
+        .filter_map(|(_, version)| version.tile.as_ref());
+    tiles.any(|tile| sheets(&tile.wet()).is_some())
+}
+
+#[test]
+fn other_models_do_not_keep_what_lies_on_top() {
+    for model in ["stokes", "marker"] {
+        let mut painting = painted("impasto");
+        assert!(has_sheets(&mut painting));
+        painting.apply(convert(CANVAS, model)).expect("another");
+        assert!(!has_sheets(&mut painting), "{model}");
+        painting.apply(convert(CANVAS, "impasto")).expect("another");
+        assert!(!has_sheets(&mut painting), "and back");
+        assert_eq!(painting.report().quanta_missing, 0);
+    }
 }
 
 /// Quanta of each layer of each cell of the canvas, the wet ones first.

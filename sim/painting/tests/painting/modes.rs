@@ -1,7 +1,9 @@
 //! Handling of brushes and preparation of surfaces (Baxter 2004, § 6.4.1, 6.7, 6.8).
 
 use maulstick_brush::BrushFile;
+use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::quantum::{Counts, QUANTUM_M, SLOTS};
+use maulstick_canvas::sheet::{quanta, slot_of};
 use maulstick_models::{MODELS, ModelEntry};
 use maulstick_painting::edits::{Fill, FillPaint, Handle, Piles, Size};
 use maulstick_painting::{Painting, PaintingSetup};
@@ -222,6 +224,7 @@ fn a_sampler_takes_the_colour_and_leaves_the_canvas_as_it_is() {
 fn the_vacuum_lifts_paint_and_leaves_the_brush_clean() {
     let mut easel = Easel::on_white(BrushMode::Normal, 50.0);
     easel.load(BLUE);
+    easel.middle();
     easel.use_as(BrushMode::Vacuum, |_| {});
     let (before, cleaner) = (total(&easel.on(CANVAS)), easel.account("cleaner"));
     easel.middle();
@@ -230,6 +233,19 @@ fn the_vacuum_lifts_paint_and_leaves_the_brush_clean() {
     assert!(easel.account("cleaner") > cleaner);
     let bare = easel.films().iter().filter(|film| **film == 0.0).count();
     assert!(bare > 200, "{bare} cells of the stroke are bare");
+    // Nothing lies on top of nothing.
+    let store = easel.painting.store(CANVAS).expect("the canvas");
+    for wet in store
+        .iter()
+        .filter_map(|(_, version)| Some(version.tile.as_ref()?.wet()))
+    {
+        let is_bare = |cell: &usize| wet.iter().all(|(_, plane)| plane[*cell] == 0.0);
+        let bare: Vec<usize> = (0..TILE_CELLS).filter(is_bare).collect();
+        for own in wet.own().iter().filter(|own| slot_of(own.shape).is_some()) {
+            let upper: Vec<f32> = quanta(&own.bytes).collect();
+            assert!(bare.iter().all(|cell| upper[*cell] == 0.0));
+        }
+    }
 }
 
 #[test]

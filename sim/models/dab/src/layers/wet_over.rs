@@ -99,7 +99,10 @@ mod tests {
         );
         let counts = whole.dry().expect("dried").counts();
         assert_eq!(counts[2], 1600 * TILE_CELLS as u64);
-        let again = half.rewet(0, &[true; TILE_CELLS]).expect("dried").tile;
+        let again = half
+            .rewet(0, &[true; TILE_CELLS], false)
+            .expect("dried")
+            .tile;
         assert!(again.dry().is_none(), "a note alone is no layer");
         assert_eq!(again.counts()[2], 1600 * TILE_CELLS as u64);
     }

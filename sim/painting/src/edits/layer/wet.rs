@@ -121,7 +121,7 @@ impl PaintingEdit for Wet {
         let mut full_cells = 0;
         let mut tiles = Changed::new();
         for (id, tile, within) in surface.dried_tiles(&part) {
-            if let Some(rewet) = tile.rewet(least, &within) {
+            if let Some(rewet) = tile.rewet(least, &within, surface.bare.shown.has_sheets()) {
                 full_cells += rewet.full_cells;
                 tiles.push((id, Arc::new(rewet.tile)));
             }

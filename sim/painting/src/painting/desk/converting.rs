@@ -6,8 +6,10 @@ use std::sync::Arc;
 use maulstick_appearance::colouring::Colouring;
 use maulstick_appearance::ground::Ground;
 use maulstick_canvas::dry::{DryLayer, DryStack};
+use maulstick_canvas::own_plane::OwnPlane;
 use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::planes::Planes;
+use maulstick_canvas::sheet::without_notes;
 use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_convert::{Converted, Converter, Distance, TileGround};
 use maulstick_num::fork_join;
@@ -176,6 +178,8 @@ fn assembled(tile: &Tile, converted: Converted, pager: &Arc<Pager>) -> Tile {
     };
     // The wet page comes after the links: what dries of it from now on is a layer of its own.
     let wet = tile.wet_page();
-    let wet = wet.map(|wet| page(wet, converted.wet));
+    // Other models do not keep what lies on top.
+    let own: Vec<OwnPlane> = without_notes(&converted.wet).collect();
+    let wet = wet.map(|wet| page(wet, converted.wet.with_own(own)));
     Tile::of_pages(wet.filter(|page| !page.get().is_empty()), dry)
 }

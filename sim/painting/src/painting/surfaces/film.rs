@@ -7,7 +7,7 @@ use maulstick_canvas::dry::DryStack;
 use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::quantum::{CELL_MAX, Counts, SLOTS};
-use maulstick_canvas::sheet;
+use maulstick_canvas::sheet::without_notes;
 use maulstick_canvas::tile::{Tile, TileId};
 
 use super::SurfaceState;
@@ -137,11 +137,7 @@ fn laid(
     let planes = planes.into_iter().enumerate();
     let planes = planes.filter_map(|(slot, plane)| Some((slot, plane?.into())));
     // A laid film and what it lies on are one sheet.
-    let own = before.own().iter();
-    let own = own
-        .filter(|own| sheet::slot_of(own.shape).is_none())
-        .cloned();
-    let planes = Planes::from_iter(planes).with_own(own);
+    let planes = Planes::from_iter(planes).with_own(without_notes(&before));
     let sums = (0..TILE_CELLS).map(|cell| planes.iter().map(|(_, plane)| plane[cell]).sum());
     Some(Laid {
         top: sums.fold(0.0, f32::max),
