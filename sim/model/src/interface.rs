@@ -2,7 +2,7 @@
 
 use maulstick_brush::head::{Head, HeadPose};
 use maulstick_canvas::own_plane::OwnPlane;
-use maulstick_canvas::quantum::{BySlot, CELL_MAX, Counts};
+use maulstick_canvas::quantum::{BySlot, CELL_MAX, Counts, SLOTS};
 use maulstick_canvas::window::{Area, Window};
 use maulstick_types::paint::Decision;
 
@@ -83,6 +83,15 @@ pub struct Step<'a> {
     pub lasting: bool,
     /// The slot of the thinner, if the painting has one.
     pub thinner: Option<usize>,
+}
+
+impl Step<'_> {
+    /// True where its paint may come to lie in two sheets: there are several paints, or sheets already.
+    #[must_use]
+    pub fn may_have_sheets(&self) -> bool {
+        let in_use = |slot: &usize| self.window.has(*slot) || self.load.has(*slot);
+        self.window.has_sheets() || (0..SLOTS).filter(in_use).count() > 1
+    }
 }
 
 /// Result of a step.

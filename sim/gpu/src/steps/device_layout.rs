@@ -55,7 +55,7 @@ impl DeviceLayout {
         let in_use = |slot: &usize| step.window.has(*slot) || step.load.has(*slot);
         let slots: Vec<usize> = (0..SLOTS).filter(in_use).collect();
         let layout = Self {
-            sheets: sheets && (step.window.has_sheets() || slots.len() > 1),
+            sheets: sheets && step.may_have_sheets(),
             slots,
             cells: step.window.width() * step.window.height(),
             texels: step.load.texels(),

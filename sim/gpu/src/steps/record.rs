@@ -62,8 +62,8 @@ pub struct StepRecord {
     transfers: [f32; 4],
     film_most: f32,
     seep: [f32; 3],
-    /// Bits of the spread, and 1 where there may be two sheets.
-    spread: [u32; 2],
+    /// Spread, borders and parts, and 1 where there may be two sheets.
+    packed: [u32; 2],
     shear: f32,
 }
 
@@ -100,7 +100,7 @@ fn number_and_flow(transfer: Transfer) -> (u32, f32) {
 }
 
 /// Spread, borders and parts of a step, as step.wgsl has them.
-fn spread_bits(step: &Step<'_>) -> u32 {
+fn packed(step: &Step<'_>) -> u32 {
     let spread = Spread::of(step);
     let ends = step.window.borders();
     let borders = ends.as_flattened().iter().rev();
@@ -166,7 +166,7 @@ impl StepRecord {
             transfers: exchanging.numbers(),
             film_most: traits.film_most as f32,
             seep: [traits.seep.beside, traits.seep.along, traits.seep.clings].map(|v| v as f32),
-            spread: [spread_bits(step), u32::from(on.sheets)],
+            packed: [packed(step), u32::from(on.sheets)],
             shear: exchanging.shear(after.press),
         }
     }

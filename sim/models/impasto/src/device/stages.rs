@@ -3,7 +3,7 @@
 use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::transfer::{NEAR, POOL, SKIN, SPLITS};
 
-use crate::stages::sheets::{COVERS, LN_ON_TOP, SHEET};
+use crate::stages::sheets::{COVERS, LN_ON_TOP, SHEET_MOST};
 use crate::stages::sides::TAKES;
 use crate::stages::velocity::{EASE, SLIP, SQUISH, STABLE};
 
@@ -112,7 +112,7 @@ pub(crate) static KERNELS: [Kernel; 14] = [
         name: "exchange_apply",
         source: &[COMMON, include_str!("shaders/exchange_apply.wgsl")],
         constants: &[
-            ("SHEET", SHEET as f64),
+            ("SHEET_MOST", SHEET_MOST as f64),
             ("COVERS", COVERS as f64),
             ("LN_ON_TOP", LN_ON_TOP as f64),
             ("TAKES", TAKES as f64),

@@ -23,7 +23,7 @@ use maulstick_model::interface::{Step, Transfer};
 use granted::Granted;
 use meeting::{Meetings, want};
 
-use super::sheets::{OnTexel, Sheet, Sheets, look, may_lie};
+use super::sheets::{OnTexel, SheetExchange, Sheets, look};
 use super::sides::Sides;
 
 /// Buffers of a step. Few of the brush's many texels touch at a time: these are renumbered in each step, so that the
@@ -139,7 +139,7 @@ impl Exchange {
         let sponge = step.handling.transfer == Transfer::Sponge;
         granted.grant(&self.texels, step.load, &step.traits, sponge);
         let (granted, lasting) = (&*granted, step.lasting);
-        let layered = may_lie(step);
+        let layered = step.may_have_sheets();
         if layered {
             look(&self.texels, step.load, &mut self.on_texels);
         }
@@ -417,7 +417,7 @@ impl Share {
         let meetings = &self.meetings;
         sheets.part(|i, top, differs| {
             let comes = self.comes(i, granted);
-            Sheet {
+            SheetExchange {
                 top,
                 lying: meetings.lying[i],
                 fraction: self.shear * meetings.fraction[i],

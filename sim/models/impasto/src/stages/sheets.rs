@@ -3,18 +3,17 @@
 //!
 //! Paint that a texel gives to a cell goes to the upper sheet. Paint that it takes comes from as deep as the bristles
 //! reach, so a light touch takes from the upper sheet alone. What was the upper sheet sinks into the body as other paint
-//! comes over it, as bristles plough through it, and where it is thicker than [`SHEET`]. Paint of one kind has no
+//! comes over it, as bristles plough through it, and where it is thicker than [`SHEET_MOST`]. Paint of one kind has no
 //! sheets.
 
 use maulstick_canvas::quantum::{QUANTUM_M, SLOTS};
 use maulstick_canvas::window::Window;
 use maulstick_model::brush::load::BrushLoad;
-use maulstick_model::interface::Step;
 use maulstick_num::exp_f32;
 use maulstick_num::select::{larger, smaller};
 
 /// Greatest thickness of the upper sheet, quanta: 250 µm, as much as a loaded stroke.
-pub const SHEET: f32 = (250e-6 / QUANTUM_M) as f32;
+pub const SHEET_MOST: f32 = (250e-6 / QUANTUM_M) as f32;
 /// Thickness of other paint under which 1/e of an upper sheet is left, quanta: 20 µm.
 pub const COVERS: f32 = (20e-6 / QUANTUM_M) as f32;
 /// ln of the share of the upper sheet that stays on top where bristles plough through all paint along a reference cell:
@@ -41,12 +40,6 @@ pub(crate) fn besides(one: u8, other: u8) -> u8 {
 pub(crate) fn only_on(window: &Window, cell: usize) -> u8 {
     let there = window.planes().filter(|(_, plane)| plane[cell] > 0.0);
     there.fold(NONE, |only, (slot, _)| besides(only, slot as u8))
-}
-
-/// True where paint of a step may come to lie in two sheets: there are several paints, or sheets already.
-pub(crate) fn may_lie(step: &Step<'_>) -> bool {
-    let in_use = |slot: &usize| step.window.has(*slot) || step.load.has(*slot);
-    step.window.has_sheets() || (0..SLOTS).filter(in_use).count() > 1
 }
 
 /// What is in the film of a texel.
@@ -82,7 +75,7 @@ pub(crate) fn look(texels: &[u32], load: &BrushLoad, found: &mut Vec<OnTexel>) {
 
 /// State of a contact's sheets before the exchange, and what the texel gives and takes, quanta.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sheet {
+pub(crate) struct SheetExchange {
     /// Quanta in the upper sheet.
     pub top: f32,
     /// Quanta of all wet paint.
@@ -102,7 +95,7 @@ pub(crate) struct Sheet {
 /// What becomes of the sheets: the shares of upper sheet and body that go to the brush, the share of the rest of the
 /// upper sheet that does not sink, and the share of that and the paint that comes which stays on top.
 #[inline(always)]
-pub(crate) fn parted(sheet: &Sheet) -> [f32; 4] {
+pub(crate) fn parted(sheet: &SheetExchange) -> [f32; 4] {
     let reach = larger(sheet.fraction * sheet.lying, sheet.goes);
     let over = sheet.top / larger(reach, 1.0);
     let off_top = smaller(sheet.goes * smaller(over, 1.0), sheet.top);
@@ -112,21 +105,21 @@ pub(crate) fn parted(sheet: &Sheet) -> [f32; 4] {
     let ploughed = LN_ON_TOP * sheet.travel * larger(1.0 - over, 0.0);
     let kept = exp_f32(ploughed - sheet.covered * (1.0 / COVERS));
     let left = (sheet.top - sheet.leaves * off_top) * kept + sheet.comes;
-    let fits = smaller(SHEET / larger(left, 1.0), 1.0);
+    let fits = smaller(SHEET_MOST / larger(left, 1.0), 1.0);
     [from_top, from_body, kept, fits]
 }
 
 /// Sheets of a core's contacts.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sheets {
-    found: Vec<Found>,
+    found: Vec<Mixtures>,
     /// Results of [`parted`] by contact.
     pub parted: [Vec<f32>; 4],
 }
 
 /// What is in the upper sheet of a contact's cell.
 #[derive(Clone, Copy, Debug)]
-struct Found {
+struct Mixtures {
     /// Quanta of all paints.
     top: f32,
     /// The only paint of cell and texel.
@@ -136,7 +129,7 @@ struct Found {
     products: f32,
 }
 
-impl Found {
+impl Mixtures {
     /// How far the two mixtures are apart: 1 less the cosine of the angle between them.
     #[inline(always)]
     fn differs(&self) -> f32 {
@@ -155,7 +148,7 @@ impl Sheets {
         texels: impl Iterator<Item = (u32, OnTexel)> + Clone,
     ) {
         self.found.clear();
-        let new = |(_, OnTexel { only, squares })| Found {
+        let new = |(_, OnTexel { only, squares })| Mixtures {
             top: 0.0,
             only,
             squares: [squares, 0.0],
@@ -180,12 +173,12 @@ impl Sheets {
 
     /// How far the texels' mixtures are from those of the upper sheets, by contact, 0 to 1.
     pub(crate) fn differ(&self) -> impl Iterator<Item = f32> + Clone {
-        self.found.iter().map(Found::differs)
+        self.found.iter().map(Mixtures::differs)
     }
 
     /// Parts them; `sheet` completes what is known of each contact, by its number, the quanta of its upper sheet and how
     /// far the texel's mixture is from it.
-    pub(crate) fn part(&mut self, sheet: impl Fn(usize, f32, f32) -> Sheet) {
+    pub(crate) fn part(&mut self, sheet: impl Fn(usize, f32, f32) -> SheetExchange) {
         self.parted.iter_mut().for_each(Vec::clear);
         for (i, found) in self.found.iter().enumerate() {
             let [from_top, from_body, kept, fits] = parted(&sheet(i, found.top, found.differs()));

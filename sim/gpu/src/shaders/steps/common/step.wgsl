@@ -91,7 +91,7 @@ struct Step {
     // Spread of maulstick-model and more: bit 0 the axis, from bit 1 the cells along it, from bit 8 whether the surface
     // ends at the window's left, right, lower, upper limit, from bit 12 the parts in which paint moves, from bit 24 the
     // slope.
-    spread: u32,
+    packed: u32,
     // 1 where as many planes follow with what is in the upper sheet.
     sheets: u32,
     // Share of what bristles reach that they shear under this press.

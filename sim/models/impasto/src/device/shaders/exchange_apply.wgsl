@@ -12,7 +12,7 @@ fn rounded(share: f32, asked: f32, there: f32) -> f32 {
 }
 
 // Constants of sheets.rs and sides.rs.
-override SHEET: f32;
+override SHEET_MOST: f32;
 override COVERS: f32;
 override LN_ON_TOP: f32;
 override TAKES: f32;
@@ -49,12 +49,12 @@ fn going(i: u32, texel: u32) -> Going {
 // maulstick-model).
 fn reach_of_spread() -> u32 {
     let fullest = bitcast<f32>(atomicLoad(&stats[stat(FULLEST)]));
-    let length = (step.spread >> 1u) & 127u;
+    let length = (step.packed >> 1u) & 127u;
     return select(0u, length / 2u, length > 1u && fullest <= TAKES * step.cell_max);
 }
 
 fn part_at(off: u32) -> f32 {
-    let length = (step.spread >> 1u) & 127u;
+    let length = (step.packed >> 1u) & 127u;
     return select(1.0, 0.5, length % 2u == 0u && off == length / 2u) / f32(length);
 }
 
@@ -80,12 +80,12 @@ fn beside(i: u32, reach: u32) -> array<u32, 8> {
     let low = vec2<i32>(around.low);
     let high = vec2<i32>(around.high);
     let at = vec2<i32>(vec2(i % step.width, i / step.width));
-    let slope = i32(step.spread) >> 24u;
+    let slope = i32(step.packed) >> 24u;
     for (var n = 0u; n < 2u * reach; n++) {
         let off = i32(n / 2u + 1u);
         let aside = (off * slope + 32) >> 6u;
         let way = select(-1, 1, (n & 1u) == 1u);
-        let place = at + way * select(vec2(off, aside), vec2(aside, off), (step.spread & 1u) == 1u);
+        let place = at + way * select(vec2(off, aside), vec2(aside, off), (step.packed & 1u) == 1u);
         let open = all(place >= low) && all(place < high);
         found[n] = select(NONE, u32(place.y) * step.width + u32(place.x), open);
     }
@@ -110,7 +110,7 @@ fn parted(i: u32, top: f32, going: Going, leaves: f32, covered: f32) -> vec4<f32
         rounded(off_top / max(top, 1.0), off_top, top),
         rounded((goes.y - off_top) / max(body, 1.0), goes.y - off_top, body),
         kept,
-        min(SHEET / max(left, 1.0), 1.0),
+        min(SHEET_MOST / max(left, 1.0), 1.0),
     );
 }
 
@@ -130,11 +130,11 @@ fn over_border(i: u32, total: f32) -> f32 {
     let at = vec2(step.from_x + i % step.width, step.from_y + i / step.width);
     let limit = vec2(step.limit_x, step.limit_y);
     let contact = contacts[i];
-    let parts = f32((step.spread >> 12u) & 4095u);
+    let parts = f32((step.packed >> 12u) & 4095u);
     let pressed = contact.squish * max(contact.reach, 0.0) * contact.cover;
     var share = 0.0;
     for (var axis = 0u; axis < 2u; axis++) {
-        let ends = (step.spread >> (8u + 2u * axis)) & 3u;
+        let ends = (step.packed >> (8u + 2u * axis)) & 3u;
         let low = (ends & 1u) == 1u && at[axis] == 0u;
         if low || ((ends & 2u) == 2u && at[axis] + 1u == limit[axis]) {
             let moved = select(1.0, -1.0, low) * contact.moved[axis];
