@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::dry::{DryLayer, DryStack};
+use crate::own_plane::OwnPlane;
 use crate::page::Page;
 use crate::planes::{Planes, TILE_CELLS, painted};
 use crate::quantum::{CELL_MAX, SLOTS};
@@ -82,6 +83,16 @@ impl Wet {
     }
 }
 
+/// Notes on what lies on top, in the cells that are `within`.
+fn notes_within(planes: &Planes, within: &[bool]) -> Vec<OwnPlane> {
+    let notes = planes.own().iter().filter_map(|own| {
+        let quanta = sheet::quanta(&own.bytes).zip(within);
+        let quanta = quanta.map(|(quanta, within)| if *within { quanta } else { 0.0 });
+        Some(sheet::note(sheet::slot_of(own.shape)?, quanta))
+    });
+    notes.collect()
+}
+
 impl Tile {
     /// The tile with its layers from number `least` on rewetted in the cells that are `within`; `None` where that
     /// changes nothing. The model's own planes stay where they are, but where the model keeps `sheets` the newest layer's
@@ -131,17 +142,10 @@ impl Tile {
         let planes = planes.filter_map(|(slot, plane)| Some((slot, plane?.into())));
         // What lay on top of the newest layer lies on top again, unless the tile has other wet paint.
         let newest = links.first()?.layer().planes.get();
-        let notes = newest
-            .own()
-            .iter()
-            .filter(|_| sheets && self.wet_page().is_none());
-        let on_top = notes.filter_map(|own| {
-            let quanta = sheet::quanta(&own.bytes).zip(within);
-            let quanta = quanta.map(|(quanta, within)| if *within { quanta } else { 0.0 });
-            Some(sheet::note(sheet::slot_of(own.shape)?, quanta))
-        });
+        let on_top = (sheets && self.wet_page().is_none()).then(|| notes_within(&newest, within));
         let before = self.wet();
-        let own = before.own().iter().cloned().chain(on_top);
+        let own = before.own().iter().cloned();
+        let own = own.chain(on_top.into_iter().flatten());
         let planes = painted(planes).with_own(own);
         Some(Rewet {
             tile: Self::paged(pager, planes, dry, Some(self)),
