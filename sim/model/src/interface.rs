@@ -8,6 +8,7 @@ use maulstick_types::paint::Decision;
 
 use crate::brush::load::BrushLoad;
 use crate::brush::traits::BrushTraits;
+use crate::rheology::Setting;
 
 /// The motion of a head in one step, in cells of the surface.
 #[derive(Clone, Copy, Debug)]
@@ -134,6 +135,8 @@ pub struct Rest<'a> {
     pub stain: f32,
     /// As [`Step::thinner`].
     pub thinner: Option<usize>,
+    /// How the paint of each slot sets.
+    pub settings: BySlot<Setting>,
 }
 
 /// Quanta by slot in the planes that a model keeps of its own on one page.

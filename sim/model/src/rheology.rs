@@ -43,3 +43,39 @@ pub fn yield_left(thinner: f32) -> f32 {
     };
     left * left * left
 }
+
+/// How a paint sets: a brush that shears it takes its structure apart, and at rest that comes back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    /// Yield stress at rest, Pa.
+    pub rest_pa: f64,
+    /// Time in which 1 − 1/e of it is back, s.
+    pub recovers_s: f64,
+}
+
+impl Default for Setting {
+    fn default() -> Self {
+        Self::TUBE
+    }
+}
+
+/// Yield stress of paint while it is worked, Pa.
+const WORKED_PA: f64 = 12.0;
+
+impl Setting {
+    /// Usual oil paint: whites yield at 50 to 500 Pa at rest (Salvant Plisson et al. 2014), and set within a second.
+    pub const TUBE: Self = Self {
+        rest_pa: 168.0,
+        recovers_s: 0.1,
+    };
+
+    /// Mean yield stress from one time to another after it has been worked, s, in Pa.
+    #[must_use]
+    pub fn mean_pa(&self, from_s: f64, to_s: f64) -> f64 {
+        let worked = WORKED_PA.min(self.rest_pa);
+        let apart = |s: f64| exp(-s / self.recovers_s.max(1e-9));
+        let lasts = self.recovers_s / (to_s - from_s).max(1e-9);
+        let apart = (lasts * (apart(from_s) - apart(to_s))).clamp(0.0, 1.0);
+        self.rest_pa - (self.rest_pa - worked) * apart
+    }
+}

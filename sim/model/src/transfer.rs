@@ -36,7 +36,7 @@ impl Exchanging {
         ln_kept: LN_KEPT,
         evens: 1.0,
         most: MAX_TRANSFER,
-        swap: 1.8,
+        swap: 2.6,
         glides: 1.0,
     };
     /// Soft hair that flares: it hardly takes paint up, and blends the paint that it moves through.
@@ -138,8 +138,8 @@ fn filled(share: f32) -> f32 {
 /// Share of a film bridging a gap that stays on the bristle as it splits.
 pub const SPLITS: f32 = 0.3;
 
-/// Thickness of the skin of a bristle that is exchanged with the paint under it, units: 70 µm.
-pub const SKIN: f32 = 0.0028;
+/// Thickness of the skin of a bristle that is exchanged with the paint under it, units: 90 µm.
+pub const SKIN: f32 = 0.0036;
 /// Gap at which half as much is sheared as where bristle and surface touch, units: 15 µm.
 pub const NEAR: f32 = 0.0006;
 

@@ -8,20 +8,26 @@ use crate::file::sections::Hair;
 /// Width of a tress of bristles that stray together, by half the head's width.
 const TRESS: f32 = 0.16;
 /// Greatest offset of a tress of hog bristles and of soft hair, by half the head's width and thickness there.
-const STRAY: [f32; 2] = [0.08, 0.015];
-/// Shortening of the shortest bristle of hog and of soft hair, by the head's length.
-const RAGGED: [f64; 2] = [0.02, 0.006];
-/// Additional shortening of a single bristle at the rim, by its own.
+const STRAY: [f32; 2] = [0.16, 0.015];
+/// Difference between the longest and the shortest tress of hog and of soft hair, by the head's length.
+const RAGGED: [f64; 2] = [0.035, 0.008];
+/// Additional difference of a single bristle at the rim, by its own; half of it shortens all of them there.
 const RIM: f32 = 4.0;
 /// Power of the place from the middle to the rim by which that grows.
 const RIM_POWER: i32 = 8;
+/// Thickness of the head by the distance at which its bristles differ in length: worn bristles stand in ranks.
+const RANK: f32 = 3.0;
+/// Greatest offset of a bristle at the rim beyond its tress's, by half the head's width, and the way along which it comes
+/// and goes, m.
+const RIM_STRAY: f32 = 0.015;
+const RIM_REGROUPS_M: f64 = 5e-3;
 /// Way along which tresses regroup, m.
 const REGROUPS_M: f64 = 25e-3;
-/// Numbers of the planes of noise: across the width, across the thickness, along.
-const PLANES: [u64; 3] = [11, 12, 13];
+/// Numbers of the planes of noise: across the width, across the thickness, along, at the rim.
+const PLANES: [u64; 4] = [11, 12, 13, 14];
 
 /// How far the strips of a head stray.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Straying {
     /// True for a blade, whose strips never shift.
     pub(super) rigid: bool,
@@ -29,8 +35,10 @@ pub(super) struct Straying {
     single_share: f32,
     /// Greatest offset of a tress, by half the head's width and thickness there.
     stray: f32,
-    /// Shortening of the shortest bristle, m.
-    ragged_m: f32,
+    /// Difference between the longest and the shortest tress, stations.
+    ragged: f32,
+    /// Stations by which the point of each strip is drawn back along it; empty where none is.
+    pub(super) drawn_back: Vec<f32>,
 }
 
 impl Straying {
@@ -42,7 +50,8 @@ impl Straying {
             rigid: file.head.hair == Hair::Steel,
             single_share: (1.0 / file.strips.stands_for) as f32,
             stray: STRAY[soft],
-            ragged_m: (RAGGED[soft] * blunt * file.length_m()) as f32,
+            ragged: (RAGGED[soft] * blunt) as f32 * (STATIONS - 1) as f32,
+            drawn_back: Vec::new(),
         }
     }
 }
@@ -59,41 +68,64 @@ impl Head {
     #[must_use]
     pub fn disordered(&self, seed: u64, way_m: f64) -> Self {
         let mut head = self.clone();
-        let Straying {
-            rigid,
-            single_share,
-            stray,
-            ragged_m,
-        } = self.straying;
-        if rigid || seed == 0 {
+        let own = &self.straying;
+        if own.rigid || seed == 0 {
             return head;
         }
-        let turns = way_m / REGROUPS_M;
-        let (turn, part) = (turns.floor(), smoothstep(turns - turns.floor()) as f32);
-        let seeds = [0, 1].map(|next| seed ^ ((turn as u64 + next) << 40));
-        let regrouped = |of: &dyn Fn(u64) -> f32| {
-            let [before, after] = seeds.map(of);
-            before + (after - before) * part
-        };
+        let (tresses, rims) = (
+            Regrouping::at(way_m / REGROUPS_M),
+            Regrouping::at(way_m / RIM_REGROUPS_M),
+        );
+        head.straying.drawn_back.clear();
         for (strip, root) in self.roots.iter().enumerate() {
             let place = [root[0] / TRESS, root[1] / TRESS];
-            let [across, aside, along] =
-                PLANES.map(|plane| regrouped(&|seed| noise(seed ^ (plane << 32), place)));
-            let single = regrouped(&|seed| unit(seed, [strip as i64, i64::MAX]));
+            let ranked = [place[0], root[1] * RANK];
+            let noisy = |turn: &Regrouping, plane: usize, place| {
+                turn.mean(seed, |seed| noise(seed ^ (PLANES[plane] << 32), place)) - 0.5
+            };
+            let single = tresses.mean(seed, |seed| unit(seed, [strip as i64, i64::MAX])) - 0.5;
             let rim = root[0].abs().max(root[1].abs()).powi(RIM_POWER);
-            let single = (0.5 + single_share * (single - 0.5)) * (1.0 + RIM * rim);
-            let stray = [across, aside].map(|v| stray * (2.0 * v - 1.0));
-            let shorter = ragged_m * 0.5 * (along + single);
+            let single = own.single_share * single * (1.0 + RIM * rim) + 0.5 * RIM * rim;
+            let along = noisy(&tresses, 2, ranked);
+            head.straying
+                .drawn_back
+                .push(0.5 * own.ragged * (along + single));
+            let aside = 2.0 * own.stray * noisy(&tresses, 1, place);
+            let across = 2.0 * own.stray * noisy(&tresses, 0, place);
+            let at_rim = 2.0 * own.stray / STRAY[0] * RIM_STRAY * rim * noisy(&rims, 3, ranked);
             for station in 0..STATIONS {
-                let at = place_along(station);
-                let bent = smoothstep(at) as f32;
+                let bent = smoothstep(place_along(station)) as f32;
                 let i = station * self.strips + strip;
-                head.closed[0][i] += bent * stray[0] * self.half_m[station][0];
-                head.closed[1][i] += bent * stray[1] * self.half_m[station][1];
-                head.closed[2][i] += at as f32 * shorter;
+                head.closed[0][i] += bent * (across + at_rim) * self.half_m[station][0];
+                head.closed[1][i] += bent * aside * self.half_m[station][1];
             }
         }
         head
+    }
+}
+
+/// A way as turns in which bristles regroup.
+#[derive(Clone, Copy, Debug)]
+struct Regrouping {
+    turn: u64,
+    /// Part of the way from this turn to the next, 0 to 1.
+    part: f32,
+}
+
+impl Regrouping {
+    fn at(turns: f64) -> Self {
+        let turn = turns.floor();
+        let part = smoothstep(turns - turn) as f32;
+        Self {
+            turn: turn as u64,
+            part,
+        }
+    }
+
+    /// A value that goes from that of this turn's seed to that of the next one's.
+    fn mean(&self, seed: u64, of: impl Fn(u64) -> f32) -> f32 {
+        let [before, after] = [0, 1].map(|next| of(seed ^ ((self.turn + next) << 40)));
+        before + (after - before) * self.part
     }
 }
 

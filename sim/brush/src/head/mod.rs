@@ -19,7 +19,7 @@ use maulstick_num::geometry::{Rigid, shortest_arc};
 
 use self::curve::{Curve, curve, middle};
 use self::disorder::Straying;
-use self::lay::{add_weighted, turn_offsets};
+use self::lay::{add_weighted, draw_back, turn_offsets};
 use self::place::Random;
 use self::weights::{nearest_in_hull, weights_of};
 use crate::file::BrushFile;
@@ -325,7 +325,6 @@ impl Head {
                 .into_iter()
                 .enumerate()
             {
-                let floor = if axis == 2 { 0.0 } else { f32::MIN };
                 let turn = [0, 1, 2].map(|i| frame.col(i)[axis] as f32);
                 // Places are kept small until the end: far from the origin f32 is coarse.
                 let center = mean[station][axis];
@@ -336,9 +335,15 @@ impl Head {
                     add_weighted(plane, weights, place);
                 }
                 let center = (center * hold.per_m) as f32;
-                plane.iter_mut().for_each(|p| *p = (*p + center).max(floor));
+                plane.iter_mut().for_each(|p| *p += center);
             }
         }
+        let floor = |z: &mut f32| *z = z.max(0.0);
+        into.z.iter_mut().for_each(floor);
+        for plane in [&mut into.x, &mut into.y, &mut into.z] {
+            draw_back(plane, &self.straying.drawn_back);
+        }
+        into.z.iter_mut().for_each(floor);
         into.skin.clear();
         if let Some(skin) = &self.skin {
             skin.pose(&self.spine_roots, &shapes, hold.per_m, &mut into.skin);

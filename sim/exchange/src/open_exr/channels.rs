@@ -13,6 +13,7 @@ pub(super) enum Source {
     /// Red, green or blue.
     Colour(usize),
     Height,
+    Gloss,
     /// Wet paint of a slot.
     Wet(usize),
     /// Dry paint of a slot.
@@ -27,6 +28,7 @@ pub(super) fn channels(paints: &[PaintSlot]) -> Vec<(String, Source)> {
         .map(|(i, name)| (name.to_owned(), Source::Colour(i)))
         .collect();
     channels.push(("height".to_owned(), Source::Height));
+    channels.push(("gloss".to_owned(), Source::Gloss));
     let names = paints.iter().map(|slot| slot.name.as_str());
     for (slot, name) in safe_names(names).into_iter().enumerate() {
         channels.push((format!("wet.{name}"), Source::Wet(slot)));
@@ -87,9 +89,9 @@ mod tests {
         };
         let channels = channels(&[paint("Yellow"), paint("Blue")]);
         let names: Vec<&str> = channels.iter().map(|(name, _)| name.as_str()).collect();
-        let expected = "B G R dry.Blue dry.Yellow height wet.Blue wet.Yellow";
+        let expected = "B G R dry.Blue dry.Yellow gloss height wet.Blue wet.Yellow";
         assert_eq!(names.join(" "), expected);
         assert_eq!(channels[2].1, Source::Colour(0));
-        assert_eq!(channels[6].1, Source::Wet(1));
+        assert_eq!(channels[7].1, Source::Wet(1));
     }
 }

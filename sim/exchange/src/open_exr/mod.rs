@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | `R`, `G`, `B` | linear colour before light, primaries and white of sRGB, unclamped; without the surface's own reflection k₁ |
 //! | `height` | m above the highest peaks of the bare ground |
+//! | `gloss` | 0 (matt) to 1, from which GGX's roughness α follows as in [`write_gloss_map`](crate::write_gloss_map) |
 //! | `wet.<paint>`, `dry.<paint>` | thickness of that paint alone, m |
 //!
 //! All are 32-bit floats, a pixel a cell, from the top row, in blocks of 16 lines packed by ZIP. A thickness is a count
@@ -46,6 +47,7 @@ const SRGB: [Vec2<f32>; 4] = [
 const INCH_M: f64 = 0.0254;
 const COMMENTS: &str = "R, G, B: linear colour before light, without the surface's own reflection. \
     height: metres above the highest peaks of the bare ground. \
+    gloss: 0 (matt) to 1. \
     wet.*, dry.*: thickness of each paint in metres.";
 
 /// Writes a surface as an OpenEXR file, from the start of `to`; the final position is not its end.

@@ -14,14 +14,14 @@ use super::channels::Source;
 /// Size of a sample, bytes.
 const SAMPLE: usize = size_of::<f32>();
 
-/// Red, green, blue and height of a band, row by row from its lowest.
-type Shown = [Vec<f32>; 4];
+/// Red, green, blue, height and gloss of a band, row by row from its lowest.
+type Shown = [Vec<f32>; 5];
 
 /// Rows in the layout of the file: line by line, channel by channel.
 pub(super) struct Rows<'a> {
     banded: &'a Banded<'a>,
     /// Index of each channel of [`Shown`] among all channels.
-    shown: [usize; 4],
+    shown: [usize; 5],
     /// Indices of the wet and the dry paint of each slot.
     wet: [usize; SLOTS],
     dry: [usize; SLOTS],
@@ -33,7 +33,7 @@ impl<'a> Rows<'a> {
     pub(super) fn new(banded: &'a Banded<'a>, channels: &[(String, Source)]) -> Self {
         let mut rows = Self {
             banded,
-            shown: [0; 4],
+            shown: [0; 5],
             wet: [0; SLOTS],
             dry: [0; SLOTS],
             channels: channels.len(),
@@ -43,6 +43,7 @@ impl<'a> Rows<'a> {
             match *source {
                 Source::Colour(i) => rows.shown[i] = place,
                 Source::Height => rows.shown[3] = place,
+                Source::Gloss => rows.shown[4] = place,
                 Source::Wet(slot) => rows.wet[slot] = place,
                 Source::Dry(slot) => rows.dry[slot] = place,
             }
@@ -56,7 +57,7 @@ impl<'a> Rows<'a> {
         for (id, tile) in self.banded.tiles(band) {
             let shown = self.banded.shown(id, tile, &mut Bakery::default());
             let [red, green, blue] = &shown.rgb;
-            let from = [red, green, blue, &shown.height];
+            let from = [red, green, blue, &shown.height, &shown.gloss];
             for (plane, from) in planes.iter_mut().zip(from) {
                 self.banded.spread(id, from, plane);
             }

@@ -17,7 +17,7 @@ use maulstick_painting::picture::unlit_picture;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::CANVAS;
 
-use crate::support::{CELLS, file, heights, painted, speck};
+use crate::support::{CELLS, decoded, file, heights, painted, speck};
 
 fn layer(file: Vec<u8>) -> Layer<AnyChannels<FlatSamples>> {
     let image = read().no_deep_data().largest_resolution_level();
@@ -86,7 +86,7 @@ fn every_quantum_comes_back() {
         let expected = counts(&mut painting);
         let all: u64 = expected.values().flatten().sum();
         let read = channels(&layer(file("OpenEXR", &mut painting)));
-        assert_eq!(read.len(), 4 + expected.len());
+        assert_eq!(read.len(), 5 + expected.len());
         let count = |thickness: &f32| (f64::from(*thickness) / QUANTUM_M).round() as u64;
         let same = |expected: &BTreeMap<String, Vec<u64>>| {
             expected.iter().all(|(name, counts)| {
@@ -116,6 +116,14 @@ fn colour_and_height_are_the_paintings() {
     assert!(attributes.capture_date.is_none() && attributes.comments.is_some());
     let read = channels(&layer);
     assert_eq!(read["height"], heights(&mut painting));
+    let (_, map) = decoded(&file("gloss map", &mut painting));
+    let map = map
+        .chunks_exact(2)
+        .map(|pair| u16::from_be_bytes([pair[0], pair[1]]));
+    let levels = read["gloss"]
+        .iter()
+        .map(|gloss| (gloss * 65_535.0 + 0.5) as u16);
+    assert!(levels.eq(map));
     let profile = Profile::of(RgbSpace::Srgb);
     let gamut = Gamut::new(GamutMapping::Soft, profile.from_working());
     let flat = |[r, g, b]: [&str; 3]| {

@@ -112,7 +112,7 @@ impl BrushTraits {
                 .map_or(0.0, |skin| (skin.recede_mm * seen) as f32),
             half_thickness: (0.5 * file.strips.thickness_mm * seen) as f32,
             lift: (file.strips.lift_mm * seen) as f32,
-            sink: (file.strips.sink_mm * seen * (PEAK_M / cell_m).min(1.0)) as f32,
+            sink: (file.strips.sink_mm * seen * (cell_m / PEAK_M).min(PEAK_MOST)) as f32,
             film_full: quanta(file.load.film_um),
             film_most: quanta(file.load.film_um) * if rigid { BLADE_OVER } else { FILM_OVER },
             inside_full: quanta(file.load.inside_um),
@@ -164,8 +164,10 @@ impl BrushTraits {
 /// Greatest quanta of a full film, and inside a full texel: single bristles take up several times that, counted in 32
 /// bits. Brushes of thousands of cells across carry no more.
 const TEXEL_MOST: f64 = (1u32 << 29) as f64;
-/// Larger cells than these hold less of the peaks of a tooth, into which bristles sink, m.
+/// Side of a cell on which bristles sink as their file says, m: the height of a larger one is a mean, above which peaks
+/// stand that they sink into, up to so many times as deep.
 const PEAK_M: f64 = 0.125e-3;
+const PEAK_MOST: f64 = 2.0;
 /// Greatest film as a multiple of its full thickness.
 pub(crate) const FILM_OVER: f64 = 2.0;
 /// Greatest film on a blade, which gathers the paint that it scrapes off.
@@ -175,6 +177,10 @@ pub(crate) const BLADE_OVER: f64 = 3.0;
 pub(crate) const FOLLOWS: f32 = 0.45;
 /// [`FOLLOWS`] of a blade.
 pub(crate) const BLADE_FOLLOWS: f32 = 1.0;
+/// Part of a film that hangs below bristles that hardly press, and the press from which all of it is squeezed under
+/// them.
+const HANGS: f32 = 0.5;
+const SQUEEZED_AT: f32 = 0.1;
 /// Share of the lift that remains where the head is fully pressed: bristles never lie in one plane.
 const UNEVEN: f32 = 0.1;
 
@@ -190,6 +196,14 @@ impl BrushTraits {
             } else {
                 UNEVEN + (1.0 - UNEVEN) * off * off
             }
+    }
+
+    /// The traits under a press of 0 to 1: the film of bristles that hardly press does not reach into the tooth.
+    #[must_use]
+    pub fn pressed(mut self, press: f32) -> Self {
+        let squeezed = (press / SQUEEZED_AT).clamp(0.0, 1.0);
+        self.film_cells_per_quantum *= 1.0 - self.exchanging.glides * HANGS * (1.0 - squeezed);
+        self
     }
 
     /// Half the width of a strip in the segment that ends at a station, cells.

@@ -105,10 +105,11 @@
 //!   in every strip and seeps between neighbours, down to a difference held by the yield stress, which keeps streaks.
 //!   Along a strip a thin film clings: what a clean brush takes up stays near its tips, and a brush that is painted out
 //!   starves bristle by bristle.
-//! - Levelling belongs to the stroke and lasts a second. Under moving bristles, a hundredth of a second a cell,
-//!   levelling is not measurable. Heights go through sixteen rounds before all paints follow by their sum; blocks
-//!   without flow rest; cells up to .5 mm flow on coarser grids first. Paint that the brush has left yields at 50 Pa,
-//!   which holds the ridges of bristles; thinner takes that away, and thinned paint wets bare ground.
+//! - Levelling belongs to the stroke. Under moving bristles, a hundredth of a second a cell, it is not measurable.
+//!   Heights go through sixteen rounds before all paints follow by their sum; blocks without flow rest; cells up to
+//!   .5 mm flow on coarser grids first. Paint that a brush has worked yields at 12 Pa, and at its rest stress within
+//!   tenths of a second, by pigment: so the ridges of bristles stand. Thinner takes that away: thinned paint flows for
+//!   eighteen seconds, off ridges and onto bare ground.
 
 #[cfg(feature = "device")]
 pub mod device;

@@ -109,7 +109,7 @@ impl Rest {
             faces.stop();
             let planes = [&mut faces.right[..], &mut faces.above[..]];
             let rounds = (self.at_once as u32, self.rests);
-            let most = levelling.add(window, &area, &round, self.thinner, rounds, planes);
+            let most = levelling.add(window, &area, &round, &self.thinner.into(), rounds, planes);
             assert!((0.0..=0.25).contains(&most), "{most}");
             let all = faces.right.iter().chain(&faces.above);
             assert!(all.clone().all(|v| v.is_finite()));

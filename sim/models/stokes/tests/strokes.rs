@@ -1,7 +1,7 @@
 //! Strokes of Stokes Paint on a small surface.
 
 use maulstick_brush::{BrushFile, Head};
-use maulstick_canvas::quantum::SLOTS;
+use maulstick_canvas::quantum::{BySlot, SLOTS};
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_canvas::window::{Area, Window};
 use maulstick_canvas::{relief::Relief, store::TileStore};
@@ -124,6 +124,7 @@ impl Easel {
             cell_m: SCALE.cell_m,
             stain: 0.0,
             thinner: None,
+            settings: BySlot::default(),
         });
     }
 

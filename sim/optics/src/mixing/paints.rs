@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use maulstick_tables::{HeadingLine, Row, Table, shown};
 use maulstick_types::{Mixture, MixtureError};
 
+use crate::oil::{PaintBody, oil_share};
 use crate::spectrum::{SAMPLES, Spectrum};
 
 /// Scattering of titanium white, per metre: over black 25 µm reflect .79, 100 µm .94.
@@ -23,6 +24,8 @@ pub struct Paint {
     pub k: Spectrum,
     /// Scattering by wavelength, per metre.
     pub s: Spectrum,
+    /// How it sets.
+    pub body: PaintBody,
 }
 
 /// Name of the thinner, which every palette has: a medium without absorption and scattering.
@@ -36,6 +39,7 @@ impl Paint {
             source: "transparent by definition".to_owned(),
             k: Spectrum::flat(0.0),
             s: Spectrum::flat(0.0),
+            body: PaintBody::FLUID,
         }
     }
 
@@ -89,6 +93,19 @@ pub enum FileFault {
         /// Wavelength that belongs to the column, nm.
         nm: f64,
     },
+    /// Columns of a row of a body.
+    #[error("{0} columns instead of 6: a body has a yield stress, Pa, and a recovery, s")]
+    BodyColumns(usize),
+    /// A yield stress or a recovery out of range.
+    #[error("column {column}: {} is not 0 to {most}", shown(.cell))]
+    Body {
+        /// The column, from 1.
+        column: usize,
+        /// Text of the cell.
+        cell: String,
+        /// The largest, Pa or s.
+        most: f64,
+    },
     /// K or S out of range.
     #[error("column {column}: {} is not 0 to {COEFFICIENT_MAX:.0}", shown(.cell))]
     Value {
@@ -97,16 +114,16 @@ pub enum FileFault {
         /// Text of the cell.
         cell: String,
     },
-    /// A quantity that is neither K nor S.
-    #[error("quantity '{}' is neither K nor S", shown(.0))]
+    /// A quantity that is not K, S or body.
+    #[error("quantity '{}' is not K, S or body", shown(.0))]
     Quantity(String),
     /// A name that no paint may have.
     #[error(transparent)]
     Name(#[from] PaintNameError),
-    /// A second row of K or of S.
+    /// A second row of K, of S or of the body.
     #[error("a second row of {quantity} of '{paint}'")]
     Twice {
-        /// The quantity, K or S.
+        /// The quantity: K, S or body.
         quantity: String,
         /// Name of the paint.
         paint: String,
@@ -231,6 +248,33 @@ fn coefficients(row: Row<'_>) -> Result<(Quantity, Spectrum), PaintError> {
     Ok((quantity, Spectrum(values)))
 }
 
+/// The body in a row.
+fn body(row: Row<'_>) -> Result<PaintBody, PaintError> {
+    if row.len() != NAMED + 2 {
+        return Err(fault_of(row, FileFault::BodyColumns(row.len())));
+    }
+    let value = |i: usize| {
+        let (column, most) = (NAMED + i, PaintBody::MOST[i]);
+        let number = row.number(column)?;
+        if (0.0..=most).contains(&number) {
+            return Ok(number);
+        }
+        let (column, cell) = (column + 1, row.cell(column).to_owned());
+        Err(fault_of(row, FileFault::Body { column, cell, most }))
+    };
+    Ok(PaintBody {
+        rest_pa: value(0)?,
+        recovers_s: value(1)?,
+    })
+}
+
+/// What a paint file says of one paint.
+#[derive(Default)]
+struct Found {
+    spectra: [Option<Spectrum>; 2],
+    body: Option<PaintBody>,
+}
+
 /// The paints to choose from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PaintLibrary {
@@ -253,45 +297,54 @@ impl PaintLibrary {
     }
 
     /// Reads a paint file, a table of `paint,colour_index,source,quantity`, then 101 values of K or S relative
-    /// to titanium white's S, 380 to 780 nm.
+    /// to titanium white's S, 380 to 780 nm; or a `body`: its yield stress at rest, Pa, and its recovery, s.
     ///
     /// # Errors
     /// [`PaintError::File`] with the line.
     pub fn parse(text: &str) -> Result<Self, PaintError> {
         let table = Table::parse(text, HeadingLine::Row)?;
-        let mut found: BTreeMap<String, [Option<Spectrum>; 2]> = BTreeMap::new();
+        let mut found: BTreeMap<String, Found> = BTreeMap::new();
         let mut order: Vec<(String, String, String)> = Vec::new();
         for row in table.rows() {
             if row.cell(0).eq_ignore_ascii_case("paint") {
                 check_header(row)?;
                 continue;
             }
-            let (quantity, values) = coefficients(row)?;
             let [name, colour_index, source] = [0, 1, 2].map(|column| row.cell(column));
             if !found.contains_key(name) {
                 check_paint_name(name).map_err(|error| fault_of(row, error.into()))?;
                 order.push((name.into(), colour_index.into(), source.into()));
             }
-            let rows = found.entry(name.to_owned()).or_default();
-            if rows[quantity as usize].replace(values).is_some() {
+            let own = found.entry(name.to_owned()).or_default();
+            let is_second = if row.cell(3) == "body" {
+                own.body.replace(body(row)?).is_some()
+            } else {
+                let (quantity, values) = coefficients(row)?;
+                own.spectra[quantity as usize].replace(values).is_some()
+            };
+            if is_second {
                 let (quantity, paint) = (row.cell(3).to_owned(), name.to_owned());
                 return Err(fault_of(row, FileFault::Twice { quantity, paint }));
             }
         }
         let mut paints = Vec::new();
         for (name, colour_index, source) in order {
-            let Some([Some(k), Some(s)]) = found.remove(&name) else {
+            let own = found.remove(&name).unwrap_or_default();
+            let [Some(k), Some(s)] = own.spectra else {
                 return Err(PaintError::File {
                     line: table.last_line(),
                     fault: FileFault::Half(name),
                 });
             };
+            let by_oil = || PaintBody::of_oil(oil_share(&colour_index));
+            let body = own.body.unwrap_or_else(by_oil);
             paints.push(Paint {
                 name,
                 colour_index,
                 source,
                 k,
                 s,
+                body,
             });
         }
         if paints.is_empty() {

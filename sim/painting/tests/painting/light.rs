@@ -300,6 +300,30 @@ fn a_turned_palette_is_lit_from_the_same_side_of_the_desk() {
     assert_eq!(lamp_over(&scene, 7), lamp_over(&scene, CANVAS));
 }
 
+/// Bare linen does not glare, however low its lamp; with the exposure as it was chosen much of it would.
+#[test]
+fn the_exposure_follows_the_lamp() {
+    let glares = |z: f64, fault: f64| {
+        let mut painting = painting(Light {
+            direction: [-0.5, 0.5, z],
+            ..Light::default()
+        });
+        let mut light = painting.scene().light.clone();
+        light.exposure *= fault;
+        painting.relight(&light).expect("in range");
+        let picture = picture_for(&mut painting, CANVAS, &Export::default());
+        let full = picture.rgb.chunks_exact(3);
+        let full = full.filter(|rgb| rgb.contains(&255)).count();
+        full as f64 / (picture.width * picture.height) as f64
+    };
+    for z in [0.7, 0.3, 0.18, 0.1, 0.01] {
+        let share = glares(z, 1.0);
+        println!("lamp at {z}: {share:.3}");
+        assert!(share < 0.05, "{z}: {share}");
+    }
+    assert!(glares(0.18, 1.2) > 0.05, "a fault would pass");
+}
+
 #[test]
 fn exposure_relief_and_softness_are_the_scenes() {
     let mut scene = PaintingSetup::default().scene();

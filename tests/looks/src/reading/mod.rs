@@ -56,7 +56,7 @@ impl Bound {
     /// True if a value keeps it.
     #[must_use]
     pub fn keeps(self, value: f64) -> bool {
-        self.worse(value, self.value()) == self.value()
+        !value.is_nan() && self.worse(value, self.value()) == self.value()
     }
 }
 

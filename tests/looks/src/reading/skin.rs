@@ -60,12 +60,11 @@ pub const BRISTLES: Readings = Readings {
 fn long_stroke(case: Case, painter: Painter) -> Result<(Easel, Frame), UserError> {
     let flat = case.brush("flat", 14.0)?;
     let (mut easel, frame) = case.easel([66.0, 10.0], "panel", flat)?;
-    easel.load(PAINT)?;
-    let ends = match painter {
-        Painter::Able => [-60.0, 60.0],
-        Painter::Faulty => [-60.0, -10.0],
-    };
-    easel.stroke(&line(frame, [ends[0], 0.0], [ends[1], 0.0], 0.5))?;
+    easel.load(match painter {
+        Painter::Able => PAINT,
+        Painter::Faulty => "Ultramarine Blue=0.3,Titanium White=0.2,Thinner=0.5",
+    })?;
+    easel.stroke(&line(frame, [-60.0, 0.0], [60.0, 0.0], 0.5))?;
     Ok((easel, frame))
 }
 

@@ -13,14 +13,16 @@
 //! A round is explicit, so on fine cells its flux is bounded. The rest, above all of long waves, flows on grids of
 //! cells twice as large, up to those of [`COARSEST_M`] ([`coarse`]).
 
+mod body;
 mod coarse;
+
+pub use self::body::{Body, Paints, thinned};
 
 use std::ops::Range;
 
 use maulstick_canvas::window::{Area, Window};
-use maulstick_model::rheology::yield_left;
 use maulstick_num::select::{larger, smaller};
-use maulstick_num::{exp_f32, wide};
+use maulstick_num::wide;
 
 /// Surface tension of linseed oil, N/m.
 pub(crate) const TENSION_N_PER_M: f64 = 0.03;
@@ -38,34 +40,6 @@ const LARGEST_SHARE: f32 = 0.25;
 /// Largest cells of a coarser grid, m: so large that thinned paint drains within the second from ridges as far apart as a
 /// brush's marks.
 const COARSEST_M: f64 = 1e-3;
-
-/// Rheology of a paint.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Body {
-    /// Yield stress, Pa.
-    pub yield_pa: f64,
-    /// Viscosity beyond it, Pa·s.
-    pub viscosity_pa_s: f64,
-}
-
-impl Body {
-    /// Paint from the tube once the brush has left it: oil colours yield at 50 to 500 Pa at rest (Salvant Plisson et al.
-    /// 2014), of which the lower end is back within a tenth of a second after a brush has sheared it apart.
-    pub const TUBE: Self = Self {
-        yield_pa: 50.0,
-        viscosity_pa_s: 20.0,
-    };
-}
-
-/// Yield stress and fluidity of paint of which `thinner` is a share of 0 to 1, by those of paint from the tube.
-#[must_use]
-#[inline(always)]
-pub fn thinned(thinner: f32) -> [f32; 2] {
-    [yield_left(thinner), 1.0 / exp_f32(-THINS * thinner)]
-}
-
-/// ln of the fluidity of thinner alone relative to paint.
-pub(crate) const THINS: f32 = 7.0;
 
 /// Scaling of the flow of one round: all in cells of `cell_m`, for `seconds`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -192,7 +166,7 @@ impl Levelling {
         window: &Window,
         area: &Area,
         round: &Round,
-        thinner: Option<usize>,
+        paints: &Paints,
         (rounds, rests): (u32, f32),
         faces: [&mut [f32]; 2],
     ) -> f32 {
@@ -200,7 +174,7 @@ impl Levelling {
             return 0.0;
         }
         self.look(window, area, round.to_cells);
-        self.soften(window, area, round.to_cells, thinner);
+        self.soften(window, area, round.to_cells, paints);
         self.before.clone_from(&self.wet);
         for plane in self.flows.iter_mut().chain(&mut self.sums) {
             plane.clear();
@@ -272,26 +246,6 @@ impl Levelling {
             surface.iter_mut().zip(wet).for_each(|(s, wet)| *s += *wet);
         }
     }
-
-    /// Applies the effect of the thinner to the paint's rheology.
-    fn soften(&mut self, window: &Window, area: &Area, to_cells: f32, thinner: Option<usize>) {
-        for plane in &mut self.body {
-            plane.clear();
-            plane.resize(self.wet.len(), 1.0);
-        }
-        let Some(thin) = thinner.and_then(|slot| window.plane(slot)) else {
-            return;
-        };
-        for (row, cells) in area.rows(window.width()).enumerate() {
-            let start = (row + HALO) * self.width + HALO;
-            for (x, count) in thin[cells].iter().enumerate() {
-                if *count > 0.0 {
-                    let at = start + x;
-                    [self.body[0][at], self.body[1][at]] = thinned(count * to_cells / self.wet[at]);
-                }
-            }
-        }
-    }
 }
 
 /// Inputs of levelling for adjacent cells of a row.
@@ -349,10 +303,13 @@ fn flow(round: &Round, bare: f32, own: &Run<'_>, next: &Run<'_>, i: usize) -> [f
     // Pressure falls where curvature grows.
     let gradient = round.tension * (next.curve[i] - own.curve[i]) + round.weight * drop;
     let height = 0.5 * (wet + wet_next);
-    let yields = 0.5 * (own.yields[i] + next.yields[i]);
+    // A bare cell has no body of its own: paint brings its along.
+    let wets = [wet, wet_next].map(|wet| if wet > 0.0 { 1.0 } else { 0.0f32 });
+    let of_paint = |[a, b]: [f32; 2]| (wets[0] * a + wets[1] * b) / larger(wets[0] + wets[1], 1.0);
+    let yields = of_paint([own.yields[i], next.yields[i]]);
     let stress = gradient.abs() * stress_factor(next.curve[i] - own.curve[i], drop);
     let sheared = larger(height - yields / larger(stress, 1e-12), 0.0);
-    let mobility = round.mobility * 0.5 * (own.fluid[i] + next.fluid[i]);
+    let mobility = round.mobility * of_paint([own.fluid[i], next.fluid[i]]);
     let mobility = mobility * sheared * sheared * (3.0 * height - sheared) / 6.0;
     let goes = (smaller(mobility, round.most) - smaller(mobility, round.finer)) * gradient;
     let donor = if goes > 0.0 { wet } else { wet_next };

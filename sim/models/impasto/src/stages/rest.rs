@@ -1,19 +1,21 @@
-//! Levelling after a stroke: once the brush is lifted the paint levels for a second, as far as its yield stress allows.
+//! Levelling after a stroke: once the brush is lifted the paint levels and sets, as far as its yield stress lets it; thinned
+//! paint flows on.
 
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::window::Area;
 use maulstick_model::interface::Rest;
 
 use super::advection::{Advection, Axis};
-use super::levelling::{Body, Levelling, Round};
+use super::levelling::{Body, Levelling, Paints, Round};
 use super::velocity::Faces;
 
-/// Duration of the levelling once the brush is lifted, s.
-const SECONDS: f64 = 1.0;
-/// Number of rounds: they leave a fifth of ripples six cells long.
-const ROUNDS: u32 = 64;
+/// Time in which paint sets, s.
+const SETS_S: f64 = 0.25;
+/// Time of each later flow, s, and their number: a film of thinner has run off ridges by then.
+const LATER_S: f64 = 1.0;
+const LATER: u32 = 17;
 /// Number of rounds of heights alone before their paint follows at once.
-const AT_ONCE: u32 = 16;
+const ROUNDS: u32 = 16;
 /// Flow per round below which blocks rest, as a share of a cell.
 const RESTS: f32 = 1e-3;
 
@@ -25,16 +27,30 @@ pub fn level(rest: &mut Rest<'_>) {
         cell_m,
         stain,
         thinner,
+        settings,
     } = rest;
     let to_cells = (QUANTUM_M / *cell_m) as f32;
-    let seconds = SECONDS / f64::from(ROUNDS);
-    let round = Round::new(Body::TUBE, *cell_m, seconds, to_cells, *stain);
     let (mut levelling, mut advection) = (Levelling::default(), Advection::default());
     let mut faces = Faces::still(area);
-    for number in 0..ROUNDS / AT_ONCE {
+    for number in 0..=LATER {
+        let from_s = SETS_S * f64::from(number.min(1)) + LATER_S * f64::from(number.max(1) - 1);
+        let lasts_s = if number == 0 { SETS_S } else { LATER_S };
+        let round = Round::new(
+            Body::TUBE,
+            *cell_m,
+            lasts_s / f64::from(ROUNDS),
+            to_cells,
+            *stain,
+        );
+        let yield_pa = |slot: usize| settings[slot].mean_pa(from_s, from_s + lasts_s);
+        let yields = std::array::from_fn(|slot| (yield_pa(slot) / Body::TUBE.yield_pa) as f32);
+        let paints = Paints {
+            thinner: *thinner,
+            yields,
+        };
         faces.stop();
         let planes = [&mut faces.right[..], &mut faces.above[..]];
-        let most = levelling.add(window, area, &round, *thinner, (AT_ONCE, RESTS), planes);
+        let most = levelling.add(window, area, &round, &paints, (ROUNDS, RESTS), planes);
         if most < RESTS {
             break;
         }

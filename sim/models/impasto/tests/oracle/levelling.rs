@@ -1,7 +1,7 @@
 //! Levelling under the brush: the flow of a thin layer of a Bingham fluid, face by face.
 
 use maulstick_canvas::window::{Area, Window};
-use maulstick_impasto::stages::levelling::{Body, Levelling, Round};
+use maulstick_impasto::stages::levelling::{Body, Levelling, Paints, Round};
 use maulstick_impasto::stages::velocity::Faces;
 
 use crate::scene::{Random, Scene};
@@ -56,7 +56,7 @@ struct Film<'a> {
     body: Body,
     seconds: f64,
     bare: f64,
-    thinner: Option<usize>,
+    paints: Paints,
     to_cells: f64,
 }
 
@@ -89,13 +89,27 @@ impl Film<'_> {
 
     /// Share of thinner.
     fn thin(&self, at: [i64; 2]) -> f64 {
-        let plane = self.thinner.and_then(|slot| self.window.plane(slot));
+        let plane = self.paints.thinner.and_then(|slot| self.window.plane(slot));
         let thin = plane.map_or(0.0, |plane| f64::from(plane[self.place(at)]));
         if thin > 0.0 {
             thin / self.quanta(at)
         } else {
             0.0
         }
+    }
+
+    /// Yield stress by that of the body: of the paints by volume, and of that what thinner leaves: a share of one half
+    /// takes all away.
+    fn left(&self, at: [i64; 2]) -> f64 {
+        let place = self.place(at);
+        let (mut all, mut sum) = (0.0, 0.0);
+        for (slot, plane) in self.window.planes() {
+            if Some(slot) != self.paints.thinner {
+                all += f64::from(plane[place]);
+                sum += f64::from(plane[place]) * f64::from(self.paints.yields[slot]);
+            }
+        }
+        sum / all.max(1.0) * (1.0 - 2.0 * self.thin(at)).max(0.0).powi(3)
     }
 
     /// The least and the greatest share of the donor's paint from `at` to `next`, given the gradient's rounding.
@@ -110,11 +124,17 @@ impl Film<'_> {
         let stresses = stresses(curved * CELL_M.powi(3), s - s_next, 24.0 * rounding);
         let mean = |of: &dyn Fn([i64; 2]) -> f64| 0.5 * (of(at) + of(next));
         let height = mean(&|at| self.to_cells * self.quanta(at) * CELL_M);
-        // A share of one half removes the yield stress; thinner alone is e⁷ times as fluid.
-        let left = |at| (1.0 - 2.0 * self.thin(at)).max(0.0).powi(3);
-        let yields = self.body.yield_pa.max(1e-9) * mean(&left);
-        let advances = ADVANCES * mean(&left);
-        let fluid = mean(&|at| maulstick_num::exp(7.0 * self.thin(at)));
+        // Bare cells have no body. Thinner alone is e⁷ times as fluid.
+        let wet: Vec<[i64; 2]> = [at, next]
+            .into_iter()
+            .filter(|at| self.quanta(*at) > 0.0)
+            .collect();
+        let of_paint = |of: &dyn Fn([i64; 2]) -> f64| {
+            wet.iter().map(|at| of(*at)).sum::<f64>() / wet.len().max(1) as f64
+        };
+        let left = of_paint(&|at| self.left(at));
+        let (yields, advances) = (self.body.yield_pa.max(1e-9) * left, ADVANCES * left);
+        let fluid = of_paint(&|at| maulstick_num::exp(7.0 * self.thin(at))).max(1e-9);
         let viscosity = self.body.viscosity_pa_s.max(1e-9) / fluid;
         let goes = |gradient: f64, by: f64| {
             let sheared = (height - yields / (by * gradient.abs()).max(1e-300)).max(0.0);
@@ -190,8 +210,18 @@ fn levelled(film: &Film<'_>, area: &Area) -> (Faces, f32) {
     let round = Round::new(film.body, CELL_M, film.seconds, to_cells, film.bare as f32);
     let mut faces = Faces::still(area);
     let planes = [&mut faces.right[..], &mut faces.above[..]];
-    let most = Levelling::default().add(film.window, area, &round, film.thinner, (1, 0.0), planes);
+    let most = Levelling::default().add(film.window, area, &round, &film.paints, (1, 0.0), planes);
     (faces, most)
+}
+
+/// Paints of a scene: in each second four scenes one is thinner, in each third the others differ in body, where the scene yields.
+fn paints(seed: u64) -> Paints {
+    let mut paints = Paints::from([None, Some(2)][seed as usize / 4 % 2]);
+    if seed % 3 == 1 {
+        paints.yields[0] = 1.2;
+        paints.yields[1] = 0.8;
+    }
+    paints
 }
 
 /// An area anywhere on the surface, now and then all of it or a row.
@@ -232,7 +262,7 @@ fn paint_levels_as_a_bingham_fluid() {
             ][seed as usize % 3],
             seconds: [2e-3, 0.06][seed as usize / 3 % 2],
             bare: [0.0, 2013.0][seed as usize / 2 % 2],
-            thinner: [None, Some(2)][seed as usize / 4 % 2],
+            paints: paints(seed),
             to_cells: f64::from(scene.traits.cells_per_quantum),
         };
         let area = area(&mut random, scene.window.limit());
@@ -279,7 +309,7 @@ fn other_paint_is_told_apart() {
             },
             seconds: 2e-3,
             bare: 2013.0,
-            thinner: Some(2),
+            paints: paints(4),
             to_cells: f64::from(scene.traits.cells_per_quantum),
         };
         change(&mut film);
@@ -294,17 +324,18 @@ fn other_paint_is_told_apart() {
         },
         seconds: 2e-3,
         bare: 2013.0,
-        thinner: Some(2),
+        paints: paints(4),
         to_cells: f64::from(scene.traits.cells_per_quantum),
     }
     .oracle(&all);
     assert!(agrees(&film(own), &want));
-    let faults: [fn(&mut Film<'_>); 5] = [
+    let faults: [fn(&mut Film<'_>); 6] = [
         |film| film.body.yield_pa *= 1.02,
         |film| film.body.viscosity_pa_s *= 1.02,
         |film| film.seconds *= 0.98,
         |film| film.bare = 50_000.0,
-        |film| film.thinner = None,
+        |film| film.paints.thinner = None,
+        |film| film.paints.yields[0] *= 1.1,
     ];
     for (number, fault) in faults.iter().enumerate() {
         assert!(!agrees(&film(*fault), &want), "fault {number} passes");

@@ -3,12 +3,16 @@
 //! It is a part of the stroke, so undo reverts both, and it follows from the journal alone: the same bytes live and
 //! offline. Palettes are left out, because their wells are standing heaps.
 
+use maulstick_canvas::quantum::BySlot;
 use maulstick_model::interface::Rest;
+use maulstick_model::rheology::Setting;
+use maulstick_optics::oil::PaintBody;
 use maulstick_types::paint::TILE;
 
 use super::cells::Cells;
 use super::stroke::Stroke;
 use crate::painting::bench::Workbench;
+use crate::painting::desk::Desk;
 use crate::painting::desk::preparation::Preparation;
 use crate::painting::optics::thinner_slot;
 
@@ -49,6 +53,7 @@ impl Stroke<'_> {
             cell_m: desk.surfaces[self.surface].cell_m,
             stain: Preparation::of(&desk.scene.surfaces[self.surface]).stain,
             thinner: thinner_slot(&desk.scene),
+            settings: settings(desk),
         });
     }
 
@@ -69,4 +74,22 @@ impl Stroke<'_> {
             to: cells(high),
         })
     }
+}
+
+/// How the paint of each slot sets.
+fn settings(desk: &Desk) -> BySlot<Setting> {
+    let mut settings = BySlot::default();
+    for (setting, slot) in settings.iter_mut().zip(&desk.scene.paints) {
+        if let Ok(paint) = desk.optics.library.find(&slot.name) {
+            let PaintBody {
+                rest_pa,
+                recovers_s,
+            } = paint.body;
+            *setting = Setting {
+                rest_pa,
+                recovers_s,
+            };
+        }
+    }
+    settings
 }

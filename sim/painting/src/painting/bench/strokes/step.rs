@@ -82,7 +82,9 @@ impl Stroke<'_> {
             sweep,
             bounds: (cells.from, cells.to),
             load: Arc::make_mut(&mut brush.load),
-            traits: preparation.traits(traits, handling.transfer),
+            traits: preparation
+                .traits(traits, handling.transfer)
+                .pressed(sweep.to.press),
             handling,
             stain: preparation.stain,
             lasting: preparation.lasting,
