@@ -143,7 +143,22 @@ fn gloss(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>, look: &Appearance)
             .collect();
         more = lay(&planes, 0.0);
     }
+    let wet_in = |cell: usize| wet.iter().any(|(_, film)| film[cell] > 0.0);
+    if let Some(dry) = dry {
+        let thick = dry.height();
+        let dried = (0..TILE_CELLS).filter(|cell| !wet_in(*cell));
+        dried.for_each(|cell| gloss[cell] *= sealed(f64::from(thick[cell]) * QUANTUM_M));
+    }
     gloss
+}
+
+/// Thickness of dry paint over which its ground drinks e times less of its oil, m: on gesso a first thin coat sinks in and
+/// is matt, as painters know it, and a few coats seal the ground.
+const SEALS_M: f64 = 20e-6;
+
+/// Share of its gloss that dry paint keeps on the ground, where it is so thick, m.
+fn sealed(thick_m: f64) -> f32 {
+    (1.0 - maulstick_num::exp(-thick_m / SEALS_M)) as f32
 }
 
 impl DisplayTile {

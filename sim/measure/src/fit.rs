@@ -10,6 +10,7 @@
 
 use maulstick_num::{exp, ln};
 use maulstick_optics::Paint;
+use maulstick_optics::oil::{PaintBody, USUAL};
 use maulstick_optics::paints::WHITE_S_PER_M;
 use maulstick_optics::spectrum::{Spectrum, resample};
 use maulstick_optics::surface::SurfaceCorrection;
@@ -352,6 +353,7 @@ fn paints(
         Spectrum(resample(&points).0.map(|log| exp(log) * WHITE_S_PER_M))
     };
     let paint = |(j, name): (usize, &String)| Paint {
+        body: PaintBody::of_oil(USUAL),
         name: name.clone(),
         colour_index: measured
             .notes

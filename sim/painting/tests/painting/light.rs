@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use maulstick_appearance::Bakery;
 use maulstick_appearance::display::WetFilms;
 use maulstick_appearance::lamp::lamp_over;
 use maulstick_appearance::picture::{Export, Picture};
@@ -14,7 +15,7 @@ use maulstick_optics::icc::Profile;
 use maulstick_optics::light::{Facet, Lamp, LampSetup, Spot, lit};
 use maulstick_optics::{PaintLibrary, Under};
 use maulstick_painting::edits::{Dry, LayerRef, Opacity};
-use maulstick_painting::picture::{picture_for, unlit_picture};
+use maulstick_painting::picture::{banded, picture_for, unlit_picture};
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
 use maulstick_types::values::{LayerName, OpacityFactor, Share};
@@ -94,6 +95,27 @@ fn drying_keeps_the_colour_and_the_height_whatever_the_share() {
         let thinner = unlit_picture(&mut painting, CANVAS);
         assert!(farthest(&wet, &thinner) > 4, "a fault would pass");
     }
+}
+
+/// Paint that dries on the ground is matt in its first thin coat; wet paint is as glossy however thin.
+#[test]
+fn a_first_thin_coat_sinks_in() {
+    let gloss = |um: f64, dries: bool| {
+        let mut painting = painting(Light::default());
+        painting
+            .apply(studio::fill("Raw Sienna", um))
+            .expect("laid");
+        if dries {
+            painting.apply(Dry::whole(CANVAS)).expect("wet");
+        }
+        let banded = banded(&mut painting, CANVAS).expect("a canvas");
+        let (id, tile) = banded.tiles(0).next().expect("a tile");
+        banded.shown(id, tile, &mut Bakery::default()).gloss[0]
+    };
+    let [thin, thick, wet, wetter] = [(8.0, true), (120.0, true), (8.0, false), (120.0, false)]
+        .map(|(um, dries)| gloss(um, dries));
+    assert!(thin < 0.5 * thick && thick < wet, "{thin} {thick} {wet}");
+    assert!((wet - wetter).abs() < 1e-6, "{wet} {wetter}");
 }
 
 #[test]
