@@ -65,7 +65,7 @@ const WORKED_PA: f64 = 12.0;
 impl Setting {
     /// Usual oil paint: whites yield at 50 to 500 Pa at rest (Salvant Plisson et al. 2014), and set within a second.
     pub const TUBE: Self = Self {
-        rest_pa: 168.0,
+        rest_pa: 167.0,
         recovers_s: 0.1,
     };
 

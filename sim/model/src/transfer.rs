@@ -25,6 +25,8 @@ pub struct Exchanging {
     pub swap: f32,
     /// Share of the shear that a light touch lacks, 0 to 1.
     pub glides: f32,
+    /// Part of its film that does not hang below it while it hardly presses, 0 to 1.
+    pub holds: f32,
 }
 
 /// Press from which bristles shear paint as deep as they reach.
@@ -36,14 +38,21 @@ impl Exchanging {
         ln_kept: LN_KEPT,
         evens: 1.0,
         most: MAX_TRANSFER,
-        swap: 2.6,
+        swap: 2.55,
         glides: 1.0,
+        holds: 0.5,
+    };
+    /// Soft hair that comes to a point: its paint hangs in a drop.
+    pub(crate) const SOFT: Self = Self {
+        holds: 0.0,
+        ..Self::BRISTLES
     };
     /// Soft hair that flares: it hardly takes paint up, and blends the paint that it moves through.
     pub(crate) const BLENDER: Self = Self {
         swap: 0.05,
         most: 0.0004,
         glides: 0.0,
+        holds: 0.0,
         ..Self::BRISTLES
     };
     /// A blade: it scrapes off paint above its edge, and fills hollows below it; ln(1 − .6).
@@ -53,6 +62,7 @@ impl Exchanging {
         most: 1.0,
         swap: 0.01,
         glides: 0.0,
+        holds: 0.0,
     };
 
     /// Share of their full shear that bristles have under a press of 0 to 1: a loaded brush glides on wet paint that it

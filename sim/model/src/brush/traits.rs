@@ -126,7 +126,8 @@ impl BrushTraits {
             exchanging: match file.head.hair {
                 Hair::Steel => Exchanging::BLADE,
                 Hair::Badger => Exchanging::BLENDER,
-                Hair::Hog | Hair::Sable => Exchanging::BRISTLES,
+                Hair::Sable => Exchanging::SOFT,
+                Hair::Hog => Exchanging::BRISTLES,
             },
             refill: share(Self::REFILL),
             creep: share(Self::CREEP),
@@ -177,9 +178,7 @@ pub(crate) const BLADE_OVER: f64 = 3.0;
 pub(crate) const FOLLOWS: f32 = 0.45;
 /// [`FOLLOWS`] of a blade.
 pub(crate) const BLADE_FOLLOWS: f32 = 1.0;
-/// Part of a film that hangs below bristles that hardly press, and the press from which all of it is squeezed under
-/// them.
-const HANGS: f32 = 0.5;
+/// Press from which all of a film is squeezed under its bristles.
 const SQUEEZED_AT: f32 = 0.1;
 /// Share of the lift that remains where the head is fully pressed: bristles never lie in one plane.
 const UNEVEN: f32 = 0.1;
@@ -202,7 +201,7 @@ impl BrushTraits {
     #[must_use]
     pub fn pressed(mut self, press: f32) -> Self {
         let squeezed = (press / SQUEEZED_AT).clamp(0.0, 1.0);
-        self.film_cells_per_quantum *= 1.0 - self.exchanging.glides * HANGS * (1.0 - squeezed);
+        self.film_cells_per_quantum *= 1.0 - self.exchanging.holds * (1.0 - squeezed);
         self
     }
 

@@ -40,7 +40,7 @@ impl PaintBody {
 }
 
 /// Yield stress at rest of a paint with a usual share of oil, Pa, and the part of it by which it is higher without oil.
-const USUAL_PA: f64 = 168.0;
+const USUAL_PA: f64 = 167.0;
 const STIFFENS: f64 = 2.0;
 /// Time in which paint stiffens again, s.
 const RECOVERS_S: f64 = 0.1;

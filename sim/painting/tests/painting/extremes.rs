@@ -111,6 +111,7 @@ fn a_brush_of_4096_cells_paints() {
         cell_m: 1e-5,
         side: 320,
         brush_mm: 40.96,
+        strips: 480,
         ways_m: &[[-0.001, 0.0], [0.001, 0.0]],
         ..USUAL
     };

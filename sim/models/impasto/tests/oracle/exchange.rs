@@ -38,7 +38,7 @@ pub(crate) const RULES: [(&str, Rule); 3] = [
             kept: 0.9,
             blade: false,
             most_m: 1e-4,
-            swap: 2.6,
+            swap: 2.55,
             shear: LIGHT,
         },
     ),

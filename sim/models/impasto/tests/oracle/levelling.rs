@@ -250,7 +250,10 @@ fn paint_levels_as_a_bingham_fluid() {
         let film = Film {
             window: &scene.window,
             body: [
-                Body::TUBE,
+                Body {
+                    yield_pa: 50.0,
+                    viscosity_pa_s: 20.0,
+                },
                 Body {
                     yield_pa: 0.0,
                     viscosity_pa_s: 20.0,
