@@ -105,7 +105,7 @@ fn gloss(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>, look: &Appearance)
     let mut gloss = vec![0.0; TILE_CELLS];
     let mut bare = TILE_CELLS;
     // From the top down: a cell has the gloss of its topmost paint.
-    let mut lay = |planes: &[(usize, &[f32])], wetness: f32| {
+    let mut lay = |planes: &[(usize, &[f32])], wetness: f32, sealed: &dyn Fn(usize) -> f32| {
         let glosses: Vec<f32> = planes.iter().map(|(slot, _)| look.gloss(*slot)).collect();
         for cell in 0..TILE_CELLS {
             if gloss[cell] > 0.0 {
@@ -123,7 +123,8 @@ fn gloss(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>, look: &Appearance)
             let all = paint + thin;
             if all > 0.0 {
                 let own = if paint > 0.0 { sum / paint } else { 0.0 };
-                gloss[cell] = maulstick_optics::light::gloss(own, thin / all, wetness);
+                gloss[cell] =
+                    sealed(cell) * maulstick_optics::light::gloss(own, thin / all, wetness);
                 bare -= 1;
             }
         }
@@ -133,7 +134,12 @@ fn gloss(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>, look: &Appearance)
         .iter()
         .map(|(slot, film)| (*slot, film.as_slice()))
         .collect();
-    let mut more = lay(&wet, 1.0);
+    let mut more = lay(&wet, 1.0, &|_| 1.0);
+    let thick = dry.map(DryStack::height);
+    let sealed = |cell: usize| {
+        let quanta = thick.as_ref().map_or(0.0, |thick| thick[cell]);
+        sealed(f64::from(quanta) * QUANTUM_M)
+    };
     let mut layers = dry.into_iter().flat_map(DryStack::layers);
     while more && let Some(layer) = layers.next() {
         let content = layer.planes.get();
@@ -141,19 +147,13 @@ fn gloss(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>, look: &Appearance)
             .iter()
             .map(|(slot, plane)| (*slot, &**plane))
             .collect();
-        more = lay(&planes, 0.0);
-    }
-    let wet_in = |cell: usize| wet.iter().any(|(_, film)| film[cell] > 0.0);
-    if let Some(dry) = dry {
-        let thick = dry.height();
-        let dried = (0..TILE_CELLS).filter(|cell| !wet_in(*cell));
-        dried.for_each(|cell| gloss[cell] *= sealed(f64::from(thick[cell]) * QUANTUM_M));
+        more = lay(&planes, 0.0, &sealed);
     }
     gloss
 }
 
 /// Thickness of dry paint over which its ground drinks e times less of its oil, m: on gesso a first thin coat sinks in and
-/// is matt, as painters know it, and a few coats seal the ground.
+/// is matt, as painters know it, and a few coats seal the ground. All grounds drink alike, also sized ones.
 const SEALS_M: f64 = 20e-6;
 
 /// Share of its gloss that dry paint keeps on the ground, where it is so thick, m.

@@ -10,7 +10,7 @@
 
 use maulstick_num::{exp, ln};
 use maulstick_optics::Paint;
-use maulstick_optics::oil::{PaintBody, USUAL};
+use maulstick_optics::body::PaintBody;
 use maulstick_optics::paints::WHITE_S_PER_M;
 use maulstick_optics::spectrum::{Spectrum, resample};
 use maulstick_optics::surface::SurfaceCorrection;
@@ -352,18 +352,17 @@ fn paints(
             .collect();
         Spectrum(resample(&points).0.map(|log| exp(log) * WHITE_S_PER_M))
     };
-    let paint = |(j, name): (usize, &String)| Paint {
-        body: PaintBody::of_oil(USUAL),
-        name: name.clone(),
-        colour_index: measured
-            .notes
-            .colour_indices
-            .get(&j)
-            .cloned()
-            .unwrap_or_default(),
-        source: measured.notes.source.clone(),
-        k: through(&|at| at.k[j]),
-        s: through(&|at| at.s[j]),
+    let paint = |(j, name): (usize, &String)| {
+        let indices = measured.notes.colour_indices.get(&j);
+        let colour_index = indices.cloned().unwrap_or_default();
+        Paint {
+            body: PaintBody::of_pigments(&colour_index),
+            name: name.clone(),
+            colour_index,
+            source: measured.notes.source.clone(),
+            k: through(&|at| at.k[j]),
+            s: through(&|at| at.s[j]),
+        }
     };
     measured.paints.iter().enumerate().map(paint).collect()
 }

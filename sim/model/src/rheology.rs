@@ -79,3 +79,43 @@ impl Setting {
         self.rest_pa - (self.rest_pa - worked) * apart
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paint_yields_at_its_worked_stress_first_and_at_its_rest_stress_last() {
+        let own = Setting {
+            rest_pa: 200.0,
+            recovers_s: 0.5,
+        };
+        let near = |got: f64, want: f64| (got - want).abs() < 0.5;
+        assert!(near(own.mean_pa(0.0, 1e-4), 12.0));
+        // 200 - 188/e.
+        assert!(near(own.mean_pa(0.4999, 0.5001), 130.84));
+        assert!(near(own.mean_pa(20.0, 21.0), 200.0));
+        let slower = Setting {
+            recovers_s: 0.6,
+            ..own
+        };
+        assert!(
+            !near(slower.mean_pa(0.4999, 0.5001), 130.84),
+            "a fault would pass"
+        );
+    }
+
+    #[test]
+    fn bodies_beyond_all_paint_stay_within_theirs() {
+        for rest_pa in [0.0, 5.0, 1e5] {
+            for recovers_s in [0.0, 86_400.0] {
+                let own = Setting {
+                    rest_pa,
+                    recovers_s,
+                };
+                let pa = own.mean_pa(0.0, 0.25);
+                assert!((0.0..=rest_pa).contains(&pa), "{own:?}: {pa}");
+            }
+        }
+    }
+}

@@ -75,7 +75,7 @@ pub mod viewing;
 
 pub use backend::{BackendError, CpuFilms, FilmBackend};
 pub use cie::{Illuminant, Observer};
-pub use mixing::{comparison, km, matching, mixture, oil, paints, search, surface, thinning};
+pub use mixing::{body, comparison, km, matching, mixture, oil, paints, search, surface, thinning};
 pub use mixture::{Blend, Coat, Layer};
 pub use paints::{Paint, PaintError, PaintLibrary, THINNER};
 pub use rule::SamplingRule;

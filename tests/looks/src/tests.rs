@@ -177,26 +177,26 @@ fn wet_paint_is_smooth_along_a_stroke() {
 /// Strokes that leave the canvas leave no strip along its edge; one along the edge does.
 #[test]
 fn strokes_past_the_border_leave_no_strip() {
-    let edge = |is_along: bool| {
-        let flat = crate::easel::brush("flat", 14.0).expect("flat");
-        let mut easel =
-            crate::easel::Easel::new([60.0, 40.0], 0.125, "linen", flat).expect("easel");
-        for _ in 0..3 {
+    use crate::easel::{Easel, Stroke, brush};
+    let across = [Stroke::along(20.0, 20.0, 75.0, 0.5); 3];
+    let along = Stroke {
+        from: [58.0, 8.0],
+        to: [58.0, 32.0],
+        ..across[0]
+    };
+    let edge = |strokes: &[Stroke]| {
+        let flat = brush("flat", 14.0).expect("flat");
+        let mut easel = Easel::new([60.0, 40.0], 0.125, "linen", flat).expect("easel");
+        for stroke in strokes {
             easel.load("Titanium White").expect("loaded");
-            let stroke = crate::easel::Stroke::along(20.0, 20.0, 75.0, 0.5);
-            easel.stroke(&stroke).expect("painted");
-        }
-        if is_along {
-            easel.load("Titanium White").expect("loaded");
-            let mut stroke = crate::easel::Stroke::along(20.0, 58.0, 62.0, 0.5);
-            (stroke.from, stroke.to) = ([58.0, 8.0], [58.0, 32.0]);
-            easel.stroke(&stroke).expect("painted");
+            easel.stroke(stroke).expect("painted");
         }
         let film = easel.film(None);
         let mean = |from: f64, to: f64| film.cut([from, 16.0], [to, 24.0]).mean();
         mean(59.0, 60.0) / mean(45.0, 50.0)
     };
-    let (past, along) = (edge(false), edge(true));
+    let past = edge(&across);
+    let along = edge(&[&across[..], &[along]].concat());
     println!("{past:.2} past, {along:.2} along the border");
     assert!(past < 1.1 && along > 1.1, "{past} {along}");
 }

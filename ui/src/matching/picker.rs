@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::task::Poll;
 
 use eframe::egui::Context;
+use maulstick_appearance::lamp::exposure_under;
 use maulstick_appearance::light::studio_settings;
 use maulstick_optics::matching::{Proposal, propose};
 use maulstick_optics::{Paint, PaintLibrary, Viewing};
@@ -104,7 +105,7 @@ pub(crate) fn search(ask: &Ask, library: &PaintLibrary) -> Matches {
     if paints.len() < 2 {
         return Err(NoMatch::OnePaint);
     }
-    let gain = ask.light.intensity * ask.light.exposure;
+    let gain = ask.light.intensity * exposure_under(&ask.light);
     if gain < DARK {
         return Err(NoMatch::Dark);
     }

@@ -17,9 +17,9 @@ const RIM: f32 = 4.0;
 const RIM_POWER: i32 = 8;
 /// Thickness of the head by the distance at which its bristles differ in length: worn bristles stand in ranks.
 const RANK: f32 = 3.0;
-/// Greatest offset of a bristle at the rim beyond its tress's, by half the head's width, and the way along which it comes
-/// and goes, m.
-const RIM_STRAY: f32 = 0.015;
+/// Greatest offset of a bristle of hog and of soft hair at the rim beyond its tress's, by half the head's width, and the
+/// way along which it comes and goes, m.
+const RIM_STRAY: [f32; 2] = [0.015, 0.0014];
 const RIM_REGROUPS_M: f64 = 5e-3;
 /// Way along which tresses regroup, m.
 const REGROUPS_M: f64 = 25e-3;
@@ -35,6 +35,8 @@ pub(super) struct Straying {
     single_share: f32,
     /// Greatest offset of a tress, by half the head's width and thickness there.
     stray: f32,
+    /// Greatest additional offset at the rim, by half the head's width.
+    rim_stray: f32,
     /// Difference between the longest and the shortest tress, stations.
     ragged: f32,
     /// Stations by which the point of each strip is drawn back along it; empty where none is.
@@ -50,6 +52,7 @@ impl Straying {
             rigid: file.head.hair == Hair::Steel,
             single_share: (1.0 / file.strips.stands_for) as f32,
             stray: STRAY[soft],
+            rim_stray: RIM_STRAY[soft],
             ragged: (RAGGED[soft] * blunt) as f32 * (STATIONS - 1) as f32,
             drawn_back: Vec::new(),
         }
@@ -81,9 +84,9 @@ impl Head {
             let place = [root[0] / TRESS, root[1] / TRESS];
             let ranked = [place[0], root[1] * RANK];
             let noisy = |turn: &Regrouping, plane: usize, place| {
-                turn.mean(seed, |seed| noise(seed ^ (PLANES[plane] << 32), place)) - 0.5
+                turn.between(seed, |seed| noise(seed ^ (PLANES[plane] << 32), place)) - 0.5
             };
-            let single = tresses.mean(seed, |seed| unit(seed, [strip as i64, i64::MAX])) - 0.5;
+            let single = tresses.between(seed, |seed| unit(seed, [strip as i64, i64::MAX])) - 0.5;
             let rim = root[0].abs().max(root[1].abs()).powi(RIM_POWER);
             let single = own.single_share * single * (1.0 + RIM * rim) + 0.5 * RIM * rim;
             let along = noisy(&tresses, 2, ranked);
@@ -92,7 +95,7 @@ impl Head {
                 .push(0.5 * own.ragged * (along + single));
             let aside = 2.0 * own.stray * noisy(&tresses, 1, place);
             let across = 2.0 * own.stray * noisy(&tresses, 0, place);
-            let at_rim = 2.0 * own.stray / STRAY[0] * RIM_STRAY * rim * noisy(&rims, 3, ranked);
+            let at_rim = 2.0 * own.rim_stray * rim * noisy(&rims, 3, ranked);
             for station in 0..STATIONS {
                 let bent = smoothstep(place_along(station)) as f32;
                 let i = station * self.strips + strip;
@@ -123,7 +126,7 @@ impl Regrouping {
     }
 
     /// A value that goes from that of this turn's seed to that of the next one's.
-    fn mean(&self, seed: u64, of: impl Fn(u64) -> f32) -> f32 {
+    fn between(&self, seed: u64, of: impl Fn(u64) -> f32) -> f32 {
         let [before, after] = [0, 1].map(|next| of(seed ^ ((self.turn + next) << 40)));
         before + (after - before) * self.part
     }

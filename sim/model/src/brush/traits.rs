@@ -43,7 +43,8 @@ pub struct BrushTraits {
     pub inside_full: f64,
     /// Thickness of a texel's film by its count, units.
     pub film_units_per_quantum: f32,
-    /// Thickness of a texel's film by its count, cells.
+    /// How far a texel's film hangs below its bristle by its count, cells: its thickness, but for bristles that hardly
+    /// press.
     pub film_cells_per_quantum: f32,
     /// Height of wet paint by its count, cells.
     pub cells_per_quantum: f32,

@@ -109,7 +109,7 @@
 //!   Heights go through sixteen rounds before all paints follow by their sum; blocks without flow rest; cells up to
 //!   .5 mm flow on coarser grids first. Paint that a brush has worked yields at 12 Pa, and at its rest stress within
 //!   tenths of a second, by pigment: so the ridges of bristles stand. Thinner takes that away: thinned paint flows for
-//!   eighteen seconds, off ridges and onto bare ground.
+//!   17 s, off ridges and onto bare ground.
 
 #[cfg(feature = "device")]
 pub mod device;

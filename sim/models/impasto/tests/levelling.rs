@@ -3,13 +3,16 @@
 
 use std::f64::consts::PI;
 
-use maulstick_canvas::quantum::QUANTUM_M;
+use maulstick_canvas::quantum::{BySlot, QUANTUM_M, SLOTS};
 use maulstick_canvas::relief::Relief;
 use maulstick_canvas::store::TileStore;
 use maulstick_canvas::window::{Area, Window};
+use maulstick_impasto::Impasto;
 use maulstick_impasto::stages::advection::{Advection, Axis};
 use maulstick_impasto::stages::levelling::{Body, Levelling, Round};
 use maulstick_impasto::stages::velocity::Faces;
+use maulstick_model::interface::{self, PaintModel as _};
+use maulstick_model::rheology::Setting;
 use maulstick_num::{cos, exp};
 
 const CELL_M: f64 = 1.25e-4;
@@ -418,6 +421,40 @@ fn extreme_bodies_stay_finite() {
                 assert!(still || !stands, "{body:?} in {seconds} s flows");
                 assert!(!still || stands || viscosity_pa_s == 1e6, "{body:?} stands");
             }
+        }
+    }
+}
+
+/// Paints that yield at nothing and at 10⁵ Pa, at once and after a day: all is finite, and no quantum is lost.
+#[test]
+fn extreme_settings_stay_finite() {
+    for rest_pa in [0.0, 1e5] {
+        for recovers_s in [0.0, 86_400.0] {
+            let mut window = rippled(300e-6, 40e-6, 8);
+            let (before, start) = (quanta(&window), amplitude(&window, 8));
+            let own = Setting {
+                rest_pa,
+                recovers_s,
+            };
+            Impasto::default().rest(&mut interface::Rest {
+                window: &mut window,
+                area: Area {
+                    from: [0; 2],
+                    size: [SIZE; 2],
+                },
+                cell_m: CELL_M,
+                stain: 0.0,
+                thinner: None,
+                settings: BySlot::from([own; SLOTS]),
+            });
+            assert_eq!(quanta(&window), before, "{own:?}");
+            let left = amplitude(&window, 8) / start;
+            assert!(left.is_finite(), "{own:?}");
+            assert_eq!(
+                left > 0.99,
+                rest_pa > 0.0 && recovers_s == 0.0,
+                "{own:?}: {left}"
+            );
         }
     }
 }

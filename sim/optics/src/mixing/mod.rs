@@ -1,5 +1,6 @@
 //! Mixtures of paints: films, matches to a colour, and the four ways of mixing compared.
 
+pub mod body;
 pub mod comparison;
 pub mod km;
 pub mod matching;

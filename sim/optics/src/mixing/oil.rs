@@ -10,40 +10,6 @@ pub const USUAL: f64 = 0.6;
 /// Shares of oil in a lean and in a rich paint, within their groups.
 const LEAN_SHARE: f64 = 0.45;
 const RICH_SHARE: f64 = 0.75;
-/// How a paint sets.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PaintBody {
-    /// Yield stress at rest, Pa.
-    pub rest_pa: f64,
-    /// Time in which 1 − 1/e of it is back once a brush has sheared the paint, s.
-    pub recovers_s: f64,
-}
-
-impl PaintBody {
-    /// Greatest yield stress, Pa, and the longest recovery, s: those of a putty, and a day.
-    pub const MOST: [f64; 2] = [1e5, 86_400.0];
-    /// A medium, which does not set.
-    pub(crate) const FLUID: Self = Self {
-        rest_pa: 0.0,
-        recovers_s: 0.0,
-    };
-
-    /// The body of a paint of which nothing is known but its share of oil: the less of it, the stiffer, as whites are
-    /// (Salvant Plisson et al. 2014, who measured 50 to 500 Pa; zinc white above lead white).
-    #[must_use]
-    pub fn of_oil(share: f64) -> Self {
-        Self {
-            rest_pa: USUAL_PA * (1.0 - STIFFENS * (share - USUAL)),
-            recovers_s: RECOVERS_S,
-        }
-    }
-}
-
-/// Yield stress at rest of a paint with a usual share of oil, Pa, and the part of it by which it is higher without oil.
-const USUAL_PA: f64 = 167.0;
-const STIFFENS: f64 = 2.0;
-/// Time in which paint stiffens again, s.
-const RECOVERS_S: f64 = 0.1;
 /// Colour indices of lean and of rich paints.
 const LEAN: [&str; 3] = ["PB29", "PB33", "PW1"];
 const RICH: [&str; 7] = ["PBr7", "PB15", "PG7", "PG36", "PR83", "PV19", "PB28"];

@@ -1,15 +1,19 @@
-//! The measured paints: K and S at 101 wavelengths, relative to titanium white, in `data/`.
+//! The measured paints: K and S at 101 wavelengths, relative to titanium white, in `data/`, and their bodies.
 
 use std::collections::BTreeMap;
 
-use maulstick_tables::{HeadingLine, Row, Table, shown};
+use maulstick_tables::{HeadingLine, Table, shown};
 use maulstick_types::{Mixture, MixtureError};
 
-use crate::oil::{PaintBody, oil_share};
-use crate::spectrum::{SAMPLES, Spectrum};
+use crate::body::PaintBody;
+use crate::spectrum::Spectrum;
 
 /// Scattering of titanium white, per metre: over black 25 µm reflect .79, 100 µm .94.
 pub const WHITE_S_PER_M: f64 = 150_000.0;
+
+mod rows;
+
+use self::rows::{COLUMNS, Said, check_header, fault_of};
 
 /// A measured paint.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,26 +97,18 @@ pub enum FileFault {
         /// Wavelength that belongs to the column, nm.
         nm: f64,
     },
-    /// Columns of a row of a body.
-    #[error("{0} columns instead of 6: a body has a yield stress, Pa, and a recovery, s")]
-    BodyColumns(usize),
-    /// A yield stress or a recovery out of range.
-    #[error("column {column}: {} is not 0 to {most}", shown(.cell))]
-    Body {
-        /// The column, from 1.
-        column: usize,
-        /// Text of the cell.
-        cell: String,
-        /// The largest, Pa or s.
-        most: f64,
-    },
-    /// K or S out of range.
-    #[error("column {column}: {} is not 0 to {COEFFICIENT_MAX:.0}", shown(.cell))]
+    /// A row of a body that has not two values.
+    #[error("a body has two values: a yield stress, Pa, and a recovery, s")]
+    BodyColumns,
+    /// A value out of range.
+    #[error("column {column}: {} is not 0 to {most:.0}", shown(.cell))]
     Value {
         /// The column, from 1.
         column: usize,
         /// Text of the cell.
         cell: String,
+        /// The largest.
+        most: f64,
     },
     /// A quantity that is not K, S or body.
     #[error("quantity '{}' is not K, S or body", shown(.0))]
@@ -189,89 +185,11 @@ impl From<maulstick_tables::TableError> for PaintError {
     }
 }
 
-/// Columns before the values.
-const NAMED: usize = 4;
-/// Columns of a row.
-const COLUMNS: usize = NAMED + SAMPLES;
-
-/// A fault in a row of a paint file.
-fn fault_of(row: Row<'_>, fault: FileFault) -> PaintError {
-    let line = row.line();
-    PaintError::File { line, fault }
-}
-
-/// The header names the wavelengths of the samples.
-fn check_header(row: Row<'_>) -> Result<(), PaintError> {
-    for column in NAMED..row.len() {
-        let nm = crate::spectrum::wavelength(column - NAMED);
-        if row.number(column)? != nm {
-            let fault = FileFault::Wavelength {
-                column: column + 1,
-                cell: row.cell(column).to_owned(),
-                nm,
-            };
-            return Err(fault_of(row, fault));
-        }
-    }
-    Ok(())
-}
-
-/// Quantity of a row.
-#[derive(Clone, Copy)]
-enum Quantity {
-    K,
-    S,
-}
-
-/// K or S of a row, per metre.
-fn coefficients(row: Row<'_>) -> Result<(Quantity, Spectrum), PaintError> {
-    if row.len() != COLUMNS {
-        return Err(fault_of(row, FileFault::Columns(row.len())));
-    }
-    let mut values = [0.0; SAMPLES];
-    for (column, value) in (NAMED..).zip(&mut values) {
-        let number = row.number(column)?;
-        if !(0.0..=COEFFICIENT_MAX).contains(&number) {
-            let fault = FileFault::Value {
-                column: column + 1,
-                cell: row.cell(column).to_owned(),
-            };
-            return Err(fault_of(row, fault));
-        }
-        *value = number * WHITE_S_PER_M;
-    }
-    let quantity = match row.cell(3) {
-        "K" => Quantity::K,
-        "S" => Quantity::S,
-        other => return Err(fault_of(row, FileFault::Quantity(other.to_owned()))),
-    };
-    Ok((quantity, Spectrum(values)))
-}
-
-/// The body in a row.
-fn body(row: Row<'_>) -> Result<PaintBody, PaintError> {
-    if row.len() != NAMED + 2 {
-        return Err(fault_of(row, FileFault::BodyColumns(row.len())));
-    }
-    let value = |i: usize| {
-        let (column, most) = (NAMED + i, PaintBody::MOST[i]);
-        let number = row.number(column)?;
-        if (0.0..=most).contains(&number) {
-            return Ok(number);
-        }
-        let (column, cell) = (column + 1, row.cell(column).to_owned());
-        Err(fault_of(row, FileFault::Body { column, cell, most }))
-    };
-    Ok(PaintBody {
-        rest_pa: value(0)?,
-        recovers_s: value(1)?,
-    })
-}
-
 /// What a paint file says of one paint.
 #[derive(Default)]
 struct Found {
-    spectra: [Option<Spectrum>; 2],
+    k: Option<Spectrum>,
+    s: Option<Spectrum>,
     body: Option<PaintBody>,
 }
 
@@ -316,11 +234,10 @@ impl PaintLibrary {
                 order.push((name.into(), colour_index.into(), source.into()));
             }
             let own = found.entry(name.to_owned()).or_default();
-            let is_second = if row.cell(3) == "body" {
-                own.body.replace(body(row)?).is_some()
-            } else {
-                let (quantity, values) = coefficients(row)?;
-                own.spectra[quantity as usize].replace(values).is_some()
+            let is_second = match Said::of(row)? {
+                Said::K(k) => own.k.replace(k).is_some(),
+                Said::S(s) => own.s.replace(s).is_some(),
+                Said::Body(body) => own.body.replace(body).is_some(),
             };
             if is_second {
                 let (quantity, paint) = (row.cell(3).to_owned(), name.to_owned());
@@ -330,14 +247,14 @@ impl PaintLibrary {
         let mut paints = Vec::new();
         for (name, colour_index, source) in order {
             let own = found.remove(&name).unwrap_or_default();
-            let [Some(k), Some(s)] = own.spectra else {
+            let (Some(k), Some(s)) = (own.k, own.s) else {
                 return Err(PaintError::File {
                     line: table.last_line(),
                     fault: FileFault::Half(name),
                 });
             };
-            let by_oil = || PaintBody::of_oil(oil_share(&colour_index));
-            let body = own.body.unwrap_or_else(by_oil);
+            let by_pigment = || PaintBody::of_pigments(&colour_index);
+            let body = own.body.unwrap_or_else(by_pigment);
             paints.push(Paint {
                 name,
                 colour_index,
@@ -413,6 +330,8 @@ impl PaintLibrary {
 mod tests {
     use maulstick_tables::Fault;
 
+    use crate::spectrum::SAMPLES;
+
     use super::*;
 
     #[test]
@@ -445,6 +364,7 @@ mod tests {
         let value = |cell: &str| FileFault::Value {
             column: 5,
             cell: cell.to_owned(),
+            most: 1e6,
         };
         let twice = FileFault::Twice {
             quantity: "K".to_owned(),

@@ -100,20 +100,20 @@ fn drying_keeps_the_colour_and_the_height_whatever_the_share() {
 /// Paint that dries on the ground is matt in its first thin coat; wet paint is as glossy however thin.
 #[test]
 fn a_first_thin_coat_sinks_in() {
-    let gloss = |um: f64, dries: bool| {
+    let gloss = |um: f64, dry: Option<Dry>| {
         let mut painting = painting(Light::default());
         painting
             .apply(studio::fill("Raw Sienna", um))
             .expect("laid");
-        if dries {
-            painting.apply(Dry::whole(CANVAS)).expect("wet");
+        if let Some(dry) = dry {
+            painting.apply(dry).expect("wet");
         }
         let banded = banded(&mut painting, CANVAS).expect("a canvas");
         let (id, tile) = banded.tiles(0).next().expect("a tile");
         banded.shown(id, tile, &mut Bakery::default()).gloss[0]
     };
-    let [thin, thick, wet, wetter] = [(8.0, true), (120.0, true), (8.0, false), (120.0, false)]
-        .map(|(um, dries)| gloss(um, dries));
+    let [thin, thick] = [8.0, 120.0].map(|um| gloss(um, Some(Dry::whole(CANVAS))));
+    let [wet, wetter] = [8.0, 120.0].map(|um| gloss(um, None));
     assert!(thin < 0.5 * thick && thick < wet, "{thin} {thick} {wet}");
     assert!((wet - wetter).abs() < 1e-6, "{wet} {wetter}");
 }

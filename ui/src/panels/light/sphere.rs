@@ -1,6 +1,7 @@
 //! A ball lit by the lamp, seen from above.
 
 use eframe::egui::{Color32, ColorImage, Rgba};
+use maulstick_appearance::lamp::exposure_under;
 use maulstick_appearance::light::cast;
 use maulstick_optics::light::{AMBIENT, Lamp, LampSetup};
 use maulstick_types::scene::Light;
@@ -18,7 +19,7 @@ pub(super) fn draw(light: &Light) -> ColorImage {
     let lamp = Lamp::new(&LampSetup {
         toward: light.direction,
         intensity: light.intensity,
-        exposure: light.exposure,
+        exposure: exposure_under(light),
         relief: light.relief,
         softness: light.softness,
         colour: cast(light),

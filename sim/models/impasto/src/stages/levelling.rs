@@ -37,7 +37,7 @@ pub const ADVANCES: f32 = 1.0;
 
 /// Largest part of a cell's paint that flows through a face at once.
 const LARGEST_SHARE: f32 = 0.25;
-/// Largest cells of a coarser grid, m: so large that thinned paint drains within the second from ridges as far apart as a
+/// Largest cells of a coarser grid, m: so large that thinned paint drains within seconds from ridges as far apart as a
 /// brush's marks.
 const COARSEST_M: f64 = 1e-3;
 
@@ -95,7 +95,7 @@ pub struct Levelling {
     surface: Vec<f32>,
     /// Laplacian of the surface.
     curve: Vec<f32>,
-    /// Yield stress and fluidity relative to paint from the tube.
+    /// Yield stress and fluidity relative to the round's body.
     body: [Vec<f32>; 2],
     /// Flow through the right and the upper face of each cell in a round, and in total, cells.
     flows: [Vec<f32>; 2],

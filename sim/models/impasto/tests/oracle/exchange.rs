@@ -178,7 +178,7 @@ fn wants(
     // A unit is 25 mm.
     let gap = f64::from(c.gap) * CELL_M / 0.025;
     let mut net = algorithm_3([a_b, a_c, lies, gap], travel, rule);
-    // Films that touch across a gap shear a skin of 70 µm, half as much where the gap is 15 µm.
+    // Films that touch across a gap shear a skin of 90 µm, half as much where the gap is 15 µm.
     let skin = (a_b - gap).clamp(0.0, 90e-6 / 0.025).min(lies);
     let mut both =
         (rule.shear * rule.swap * travel * 15e-6 / (15e-6 + 0.025 * gap)).min(1.0) * skin;

@@ -22,7 +22,7 @@ use super::backend::deferral::Deferral;
 use crate::brush_colour::Carried;
 use crate::error::BrushError;
 
-/// Distance along a stroke between regroupings of its bristles, cells: none moves by a cell in it.
+/// Distance along a stroke between regroupings of its bristles, cells: none of a head of 14 mm moves by a cell in it.
 const REGROUP_CELLS: f64 = 5.0;
 /// Bits of a seed.
 const SEEDS: u64 = 0x7fff_ffff;

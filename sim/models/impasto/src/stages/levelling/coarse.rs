@@ -72,13 +72,27 @@ impl Levelling {
             means.resize(width * height + BLOCK, 0.0);
             means
         };
+        // Bare cells have no body.
+        let wets: Vec<f32> = (self.wet.iter())
+            .map(|wet| if *wet > 0.0 { 1.0 } else { 0.0 })
+            .collect();
+        let counts = mean(&wets, 1.0);
+        let of_paint = |plane: usize| {
+            let own: Vec<f32> = (self.body[plane].iter().zip(&wets))
+                .map(|(own, wet)| own * wet)
+                .collect();
+            let mut sums = mean(&own, 1.0);
+            let cells = sums.iter_mut().zip(&counts);
+            cells.for_each(|(sum, count)| *sum /= larger(*count, 1.0));
+            sums
+        };
         let still = || vec![0.0; width * height + BLOCK];
         Self {
             width,
             wet: mean(&self.wet, 0.125),
             surface: mean(&self.surface, 0.125),
             curve: still(),
-            body: [mean(&self.body[0], 0.25), mean(&self.body[1], 0.25)],
+            body: [0, 1].map(of_paint),
             flows: [still(), still()],
             sums: [still(), still()],
             before: Vec::new(),

@@ -6,7 +6,7 @@
 use maulstick_canvas::quantum::BySlot;
 use maulstick_model::interface::Rest;
 use maulstick_model::rheology::Setting;
-use maulstick_optics::oil::PaintBody;
+use maulstick_optics::body::PaintBody;
 use maulstick_types::paint::TILE;
 
 use super::cells::Cells;
@@ -92,4 +92,30 @@ fn settings(desk: &Desk) -> BySlot<Setting> {
         }
     }
     settings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A paint of unknown pigments sets as a slot without a paint does.
+    #[test]
+    fn usual_paint_is_the_same_for_the_palette_and_for_the_models() {
+        let PaintBody {
+            rest_pa,
+            recovers_s,
+        } = PaintBody::of_pigments("");
+        let usual = Setting {
+            rest_pa,
+            recovers_s,
+        };
+        assert_eq!(usual, Setting::TUBE);
+        assert_ne!(
+            usual,
+            Setting {
+                rest_pa: 2.0 * rest_pa,
+                ..usual
+            }
+        );
+    }
 }
