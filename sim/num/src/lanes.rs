@@ -82,6 +82,16 @@ impl Lanes for f32x8 {
     }
 }
 
+/// Eight of a plane from `start` on; all of a plane of fewer, in turn.
+#[inline(always)]
+#[must_use]
+pub fn run<L: Lanes>(plane: &[f32], start: usize) -> L {
+    match plane[start..].first_chunk() {
+        Some(run) => L::of(run),
+        None => L::of(&std::array::from_fn(|i| plane[i % plane.len()])),
+    }
+}
+
 #[cfg(target_arch = "x86_64")]
 mod avx {
     use std::arch::x86_64::*;

@@ -19,7 +19,7 @@ use maulstick_num::geometry::{Rigid, shortest_arc};
 
 use self::curve::{Curve, curve, middle};
 use self::disorder::Straying;
-use self::lay::{add_weighted, draw_back, turn_offsets};
+use self::lay::{draw_back, place_strips};
 use self::place::Random;
 use self::weights::{nearest_in_hull, weights_of};
 use crate::file::BrushFile;
@@ -314,29 +314,32 @@ impl Head {
             plane.resize(count, 0.0);
         }
         let clump = self.clumping[0] + (self.clumping[1] - self.clumping[0]) * hold.wetness;
-        let mut off = [const { Vec::new() }; 3];
         for station in 0..STATIONS {
             let row = station * self.strips..(station + 1) * self.strips;
-            self.offsets(row.clone(), press as f32, clump, &mut off);
             let turned = brush.vector(self.rest[station]);
             let frame = shortest_arc(turned, tangents[station]) * brush.rotation;
             let frame = DMat3::from_quat(frame) * hold.per_m;
-            for (axis, plane) in [&mut into.x, &mut into.y, &mut into.z]
-                .into_iter()
-                .enumerate()
-            {
-                let turn = [0, 1, 2].map(|i| frame.col(i)[axis] as f32);
-                // Places are kept small until the end: far from the origin f32 is coarse.
-                let center = mean[station][axis];
-                let plane = &mut plane[row.clone()];
-                turn_offsets(plane, &off, turn);
-                for (curve, weights) in curves.iter().zip(&self.weights) {
-                    let place = ((curve[station][axis] - center) * hold.per_m) as f32;
-                    add_weighted(plane, weights, place);
-                }
-                let center = (center * hold.per_m) as f32;
-                plane.iter_mut().for_each(|p| *p += center);
-            }
+            let center = mean[station];
+            let in_units = |place: DVec3| (place * hold.per_m).to_array().map(|v| v as f32);
+            let curves = curves.iter().zip(&self.weights);
+            let spines: Vec<_> = curves
+                .map(|(curve, weights)| (in_units(curve[station] - center), &weights[..]))
+                .collect();
+            let HeadPose { x, y, z, .. } = into;
+            let planes = [x, y, z].map(|plane| &mut plane[row.clone()]);
+            let clumped = self.clumped.iter().flatten();
+            let clumped: Vec<_> = clumped.map(|plane| &plane[row.clone()]).collect();
+            let common = lay::Station {
+                closed: self.closed.each_ref().map(|plane| &plane[row.clone()]),
+                opening: self.opening.each_ref().map(|plane| &plane[row.clone()]),
+                press: into.press,
+                clumped: &clumped,
+                clump,
+                turn: [0, 1, 2].map(|axis| [0, 1, 2].map(|i| frame.col(i)[axis] as f32)),
+                spines: &spines,
+                center: in_units(center),
+            };
+            place_strips(planes, &common);
         }
         let floor = |z: &mut f32| *z = z.max(0.0);
         into.z.iter_mut().for_each(floor);
@@ -347,32 +350,6 @@ impl Head {
         into.skin.clear();
         if let Some(skin) = &self.skin {
             skin.pose(&self.spine_roots, &shapes, hold.per_m, &mut into.skin);
-        }
-    }
-
-    /// The offsets of a station's strips in the brush frame, m.
-    fn offsets(
-        &self,
-        row: std::ops::Range<usize>,
-        press: f32,
-        clump: f32,
-        into: &mut [Vec<f32>; 3],
-    ) {
-        for (axis, off) in into.iter_mut().enumerate() {
-            off.clear();
-            off.extend_from_slice(&self.closed[axis][row.clone()]);
-            if let Some(opening) = self.opening.get(axis) {
-                let opening = &opening[row.clone()];
-                off.iter_mut()
-                    .zip(opening)
-                    .for_each(|(o, v)| *o += press * v);
-            }
-            if let Some(clumped) = &self.clumped {
-                let clumped = &clumped[axis][row.clone()];
-                off.iter_mut()
-                    .zip(clumped)
-                    .for_each(|(o, v)| *o += clump * v);
-            }
         }
     }
 }

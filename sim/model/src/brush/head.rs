@@ -4,7 +4,7 @@ use glam::DVec3;
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{Head, HeadPose, Hold};
 use maulstick_num::geometry::{Rigid, nlerp};
-use maulstick_num::lanes::Lanes;
+use maulstick_num::lanes::run;
 use maulstick_num::wide;
 use maulstick_types::brush::Solve;
 
@@ -108,15 +108,6 @@ impl Waypoint {
             wetness: self.wetness,
         };
         head.pose(&hold, into);
-    }
-}
-
-/// Eight of a plane from `start` on; all of a plane of fewer, in turn.
-#[inline(always)]
-fn run<L: Lanes>(plane: &[f32], start: usize) -> L {
-    match plane[start..].first_chunk() {
-        Some(run) => L::of(run),
-        None => L::of(&std::array::from_fn(|i| plane[i % plane.len()])),
     }
 }
 

@@ -56,9 +56,7 @@ impl Band {
 
     /// Draws the parts of the head that, with their paint, are below `top`, cells; its strips are on the grid already.
     pub(super) fn draw_head(&mut self, step: &Step<'_>, ribbons: &Ribbons, top: f32) {
-        let (traits, to) = (&step.traits, step.sweep.to);
-        let film = step.load.thickest() as f32 * traits.film_cells_per_quantum;
-        self.draw_skin(step, top + film, traits.recede * to.splay);
+        self.draw_skin(step, top);
         draw_strips(&mut self.drawing, ribbons);
     }
 

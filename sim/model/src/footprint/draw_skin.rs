@@ -15,11 +15,14 @@ struct Corner {
 }
 
 impl Band {
-    /// Draws the faces of the skin that come below `height`; the paint of its strips is on it.
-    pub(super) fn draw_skin(&mut self, step: &Step<'_>, height: f32, bottom: f32) {
+    /// Draws the faces of the skin that, with the paint of its strips on them, come below `top`, cells.
+    pub(super) fn draw_skin(&mut self, step: &Step<'_>, top: f32) {
         let Some(skin) = step.head.skin() else {
             return;
         };
+        let traits = &step.traits;
+        let height = top + step.load.thickest() as f32 * traits.film_cells_per_quantum;
+        let bottom = traits.recede * step.sweep.to.splay;
         let (before, after) = (&step.sweep.from.skin, &step.sweep.to.skin);
         for face in skin.faces() {
             let low = |i: &u32| after.z[*i as usize] + bottom < height;

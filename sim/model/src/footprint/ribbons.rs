@@ -7,6 +7,8 @@ use maulstick_brush::head::STATIONS;
 use maulstick_brush::{Head, HeadPose};
 use maulstick_canvas::window::Area;
 use maulstick_num::fork_join::each;
+use maulstick_num::select::smaller;
+use maulstick_num::wide;
 
 use super::piece::{Line, Piece};
 use super::shares_of;
@@ -52,6 +54,8 @@ pub(super) struct Laid {
 #[derive(Clone, Debug, Default)]
 struct Share {
     strips: Range<usize>,
+    /// Height of the lowest point of each strip, cells.
+    lowest: Vec<f32>,
     laid: Vec<Laid>,
 }
 
@@ -135,33 +139,67 @@ impl Share {
         self.laid.clear();
         let (lift, turned) = (step.head.lift(), step.load.seed() as usize);
         let loose = step.traits.loose(step.sweep.to.press);
+        let film = |quanta: u32| quanta as f32 * step.traits.film_cells_per_quantum;
+        let most = top + film(step.load.thickest());
+        let Self { strips, lowest, .. } = self;
+        find_lowest(step, strips.clone(), lowest);
         for strip in self.strips.clone() {
-            let ribbon = Ribbon {
-                strip,
-                // Another load has other bristles stand out.
-                bottom: loose * lift[(strip + turned) % lift.len()],
-                rank: rank(step.head, step.sweep.to, strip),
-            };
-            let film = step.load.thickest_of(strip) as f32 * step.traits.film_cells_per_quantum;
-            self.lay_strip(step, under, ribbon, top + film - ribbon.bottom);
+            let lowest = self.lowest[strip - self.strips.start];
+            if lowest >= most {
+                continue;
+            }
+            // Another load has other bristles stand out.
+            let bottom = loose * lift[(strip + turned) % lift.len()];
+            let height = top + film(step.load.thickest_of(strip)) - bottom;
+            if lowest < height {
+                let rank = rank(step.head, step.sweep.to, strip);
+                let ribbon = Ribbon {
+                    strip,
+                    bottom,
+                    rank,
+                };
+                self.lay_strip(step, under, ribbon, height);
+            }
         }
     }
 
     /// Lays out the segments of a strip below `height`.
     fn lay_strip(&mut self, step: &Step<'_>, under: Under, ribbon: Ribbon, height: f32) {
-        let mut first = Point::of(step, ribbon.strip, 0);
+        let (z, strips) = ([&step.sweep.to.z, &step.sweep.from.z], step.head.strips());
+        let z = |station: usize| {
+            let [after, before] = z.map(|z| z[station * strips + ribbon.strip]);
+            middle(after, before)
+        };
+        let mut begins = z(0);
         for station in 1..STATIONS {
-            let last = Point::of(step, ribbon.strip, station);
-            let [begins, ends] = [first, last].map(|point| point.at[2]);
+            let ends = z(station);
             if begins.min(ends) < height {
-                let both = below(&first, &last, height);
+                let point = |station| Point::of(step, ribbon.strip, station);
+                let both = below(&point(station - 1), &point(station), height);
                 let ends = [begins > height, ends > height || station == STATIONS - 1];
                 let half = step.traits.half_width_before(station);
                 let round = 2.0 * step.traits.half_thickness;
                 self.laid
                     .extend(under.piece(ribbon, &both, [half, round], ends));
             }
-            first = last;
+            begins = ends;
+        }
+    }
+}
+
+wide! {
+    /// Height of the lowest point of each strip in the middle of a step.
+    fn find_lowest(step: &Step<'_>, strips: Range<usize>, lowest: &mut Vec<f32>) {
+        let sweep = &step.sweep;
+        lowest.clear();
+        lowest.resize(strips.len(), f32::MAX);
+        for station in 0..STATIONS {
+            let from = station * step.head.strips();
+            let row = from + strips.start..from + strips.end;
+            let heights = sweep.to.z[row.clone()].iter().zip(&sweep.from.z[row]);
+            for (lowest, (after, before)) in lowest.iter_mut().zip(heights) {
+                *lowest = smaller(*lowest, middle(*after, *before));
+            }
         }
     }
 }
@@ -211,6 +249,7 @@ impl Under {
 
 /// Value in the middle of a step from `before` to `after`.
 #[must_use]
+#[inline(always)]
 pub fn middle(after: f32, before: f32) -> f32 {
     after - 0.5 * (after - before)
 }

@@ -166,6 +166,9 @@ impl Exchange {
         }
         let mut from_nowhere = [0; SLOTS];
         for slot in 0..SLOTS {
+            if !step.load.has(slot) && !step.window.has(slot) {
+                continue;
+            }
             let change = self.exchange(slot, step);
             from_nowhere[slot] = change;
             if !sponge {
