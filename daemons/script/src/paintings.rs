@@ -19,10 +19,12 @@ use crate::Script;
 use crate::ScriptRunner;
 
 /// Names and scripts of the paintings.
-pub const PAINTINGS: [(&str, &str); 3] = [
+pub const PAINTINGS: [(&str, &str); 5] = [
     ("still-life", include_str!("../paintings/still-life.toml")),
     ("flower", include_str!("../paintings/flower.toml")),
     ("landscape", include_str!("../paintings/landscape.toml")),
+    ("portrait", include_str!("../paintings/portrait.toml")),
+    ("wheat-field", include_str!("../paintings/wheat-field.toml")),
 ];
 
 /// A brush's name until the script takes one up.

@@ -20,7 +20,7 @@ use crate::commands::{progress_bar, say, write_picture, write_take};
 pub enum DemoCommand {
     /// Make a take: a flower, or the strokes of a sheet of marks
     Take(TakeOptions),
-    /// Paint one of the bundled paintings: still-life, flower, landscape
+    /// Paint one of the bundled paintings: still-life, flower, landscape, portrait, wheat-field
     Painting(PaintingOptions),
 }
 

@@ -210,3 +210,53 @@ fn the_landscape_is_light_above_and_near_things_are_dark_and_thick() {
     assert!(tree > 1.5 * thin, "{tree} {thin} µm");
     assert!(land.covered() > 0.85, "{}", land.covered());
 }
+
+#[test]
+fn the_portraits_light_is_warm_and_its_shadow_lost() {
+    let head = Measured::of("portrait");
+    let brow = [62.0..80.0, 156.0..166.0];
+    let cheek = [109.0..120.0, 104.0..130.0];
+    let dark = [11.0..37.0, 182.0..209.0];
+    let hair = [68.0..100.0, 176.0..186.0];
+    let collar = [66.0..74.0, 64.0..74.0];
+    let tie = [79.0..84.0, 41.0..50.0];
+    let [red, green, blue] = head.colour(brow.clone());
+    assert!(red > green && green > blue + 20.0, "warm skin");
+    let [red, green, blue] = head.colour(tie);
+    assert!(red > green + 50.0 && red > blue + 50.0, "a red tie");
+    let [red, _, blue] = head.colour(hair.clone());
+    assert!((red - blue).abs() < 40.0, "grey hair: {red} {blue}");
+    let values = [&brow, &cheek, &dark, &hair, &collar].map(|r| value(head.colour(r.clone())));
+    println!("{values:?}");
+    assert!(values[0] > values[1] + 60.0 && values[1] < values[2] + 50.0);
+    assert!(values[2] < 80.0 && values[3] > 120.0 && values[4] > 150.0);
+    let [brow, hair, dark] = [brow, hair, dark].map(|r| head.thickness(r));
+    assert!(
+        brow > 1.5 * dark && hair > 1.5 * dark,
+        "{brow} {hair} {dark} µm"
+    );
+    assert!(head.covered() > 0.85, "{}", head.covered());
+}
+
+#[test]
+#[ignore = "long: the others stand for it"]
+fn the_wheat_field_is_yellow_under_a_moving_sky() {
+    let field = Measured::of("wheat-field");
+    let sky = [20.0..170.0, 110.0..168.0];
+    let cloud = [84.0..104.0, 126.0..150.0];
+    let hills = [58.0..130.0, 70.0..84.0];
+    let cypress = [186.0..202.0, 64.0..124.0];
+    let wheat = [20.0..168.0, 14.0..38.0];
+    let [red, _, blue] = field.colour(sky.clone());
+    assert!(blue > red + 10.0, "a blue sky: {red} {blue}");
+    let [red, _, blue] = field.colour(hills.clone());
+    assert!(blue > red + 30.0, "blue hills: {red} {blue}");
+    let [red, green, blue] = field.colour(wheat);
+    assert!(red > blue + 60.0 && green > blue + 40.0, "yellow wheat");
+    let [red, green, blue] = field.colour(cypress.clone());
+    assert!(green > red + 10.0 && green > blue, "a green cypress");
+    let values = [&cypress, &hills, &sky, &cloud].map(|r| value(field.colour(r.clone())));
+    println!("{values:?}");
+    assert!(values.is_sorted() && values[0] < 90.0, "{values:?}");
+    assert!(field.covered() > 0.85, "{}", field.covered());
+}
