@@ -131,6 +131,8 @@ pub struct WellCell {
 /// A surface without its painting.
 #[derive(Clone, Debug)]
 pub struct BlankSurface {
+    /// Columns and rows of its cells.
+    pub cells: [u32; 2],
     /// Ground of the primed surface.
     pub ground: Ground,
     /// Heights of the ground under the paint.
@@ -140,6 +142,12 @@ pub struct BlankSurface {
 }
 
 impl BlankSurface {
+    /// Columns and rows of a tile's cells that lie on it.
+    pub(crate) fn cells_of(&self, id: TileId) -> [usize; 2] {
+        let before = [id.x, id.y].map(|tile| tile as usize * TILE);
+        [0, 1].map(|i| (self.cells[i] as usize).saturating_sub(before[i]).min(TILE))
+    }
+
     /// The places in a tile of its cells that lie in a well.
     pub fn cells_in_wells(&self, id: TileId) -> impl Iterator<Item = usize> {
         let wells = self.wells.iter();

@@ -14,11 +14,14 @@ use maulstick_types::paint::TILE;
 const BARE_M: f32 = 0.5e-6;
 
 /// Share of each cell of a tile that its paint covers, 0 to 1, by the paint's height, m; `None` without an edge.
-/// Neighbours beyond the tile are not read.
+/// Neighbours beyond the first `cells` columns and rows, those of the surface, are not read: paint that ends with the
+/// surface has no edge there.
 #[must_use]
-pub(crate) fn covers(paint: &[f32]) -> Option<Vec<f32>> {
+pub(crate) fn covers(paint: &[f32], cells: [usize; 2]) -> Option<Vec<f32>> {
+    let [columns, rows] = cells;
     let is_bare = |height: &f32| *height < BARE_M;
-    if paint.iter().all(is_bare) || !paint.iter().any(is_bare) {
+    let mut on_surface = (paint.chunks_exact(TILE).take(rows)).flat_map(|row| &row[..columns]);
+    if on_surface.clone().all(is_bare) || !on_surface.any(is_bare) {
         return None;
     }
     let mut covers = vec![1.0; TILE_CELLS];
@@ -28,8 +31,8 @@ pub(crate) fn covers(paint: &[f32]) -> Option<Vec<f32>> {
         }
         let [x, y] = [cell % TILE, cell / TILE];
         let (mut at_edge, mut most) = (false, [0.0f32; 2]);
-        for row in y.saturating_sub(1)..(y + 2).min(TILE) {
-            for column in x.saturating_sub(1)..(x + 2).min(TILE) {
+        for row in y.saturating_sub(1)..(y + 2).min(rows) {
+            for column in x.saturating_sub(1)..(x + 2).min(columns) {
                 let beside = paint[row * TILE + column];
                 if [column, row] == [x, y] {
                     continue;
@@ -74,7 +77,7 @@ mod tests {
     fn a_sloping_edge_covers_cells_by_its_share_of_them() {
         for run in [3, 9, 64] {
             let (paint, shares) = sloping(run);
-            let covers = covers(&paint).expect("an edge");
+            let covers = covers(&paint, [TILE; 2]).expect("an edge");
             let painted = |share: &f32| *share > 0.0;
             let pairs = || {
                 covers
@@ -92,14 +95,29 @@ mod tests {
     }
 
     #[test]
+    fn paint_that_ends_with_the_surface_has_no_edge_there() {
+        let [columns, rows] = [37, 50];
+        let thick = |cell: usize| match [cell % TILE, cell / TILE] {
+            [x, y] if x < columns && y < rows => 50e-6 + 1e-6 * ((x + y) % 7) as f32,
+            _ => 0.0,
+        };
+        let paint: Vec<f32> = (0..TILE_CELLS).map(thick).collect();
+        assert_eq!(covers(&paint, [columns, rows]), None);
+        assert!(
+            covers(&paint, [TILE; 2]).is_some(),
+            "what lies beyond is read"
+        );
+    }
+
+    #[test]
     fn paint_without_an_edge_is_whole() {
-        assert_eq!(covers(&[0.0; TILE_CELLS]), None);
-        assert_eq!(covers(&[50e-6; TILE_CELLS]), None);
+        assert_eq!(covers(&[0.0; TILE_CELLS], [TILE; 2]), None);
+        assert_eq!(covers(&[50e-6; TILE_CELLS], [TILE; 2]), None);
         // A line of one cell, and a speck, cover their cells.
         let mut line = vec![0.0; TILE_CELLS];
         (0..TILE).for_each(|x| line[20 * TILE + x] = 80e-6);
         line[40 * TILE + 40] = 300e-6;
-        let covers = covers(&line).expect("edges");
+        let covers = covers(&line, [TILE; 2]).expect("edges");
         assert!(covers.iter().all(|cover| *cover == 1.0));
     }
 }

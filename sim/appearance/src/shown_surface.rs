@@ -74,7 +74,7 @@ impl ShownSurface {
 
     /// Lets the ground show beside paint that covers a cell in part.
     fn uncover(&self, id: TileId, look: &Appearance, shown: &mut DisplayTile) {
-        let Some(covers) = covers(&shown.height) else {
+        let Some(covers) = covers(&shown.height, self.cells_of(id)) else {
             return;
         };
         let bare = WetFilms::default().shade(&look.studio, self.ground.tile(id).under());

@@ -76,6 +76,7 @@ impl Easel {
         };
         let bare = ShownSurface {
             blank: BlankSurface {
+                cells: [64; 2],
                 ground: self.ground.clone(),
                 relief: Arc::new(Relief::flat(2.5e-4)),
                 wells: Vec::new(),

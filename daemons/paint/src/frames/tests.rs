@@ -43,6 +43,7 @@ fn rig_of(cells: [u32; 2]) -> Rig {
         let bare = Arc::new(ShownSurface {
             shown: &Counted,
             blank: BlankSurface {
+                cells,
                 ground: Ground::Even(vec![0.95; look.studio.wavelengths()]),
                 relief: Arc::new(Relief::flat(2.5e-4)),
                 wells: Vec::new(),

@@ -53,6 +53,7 @@ fn bare(studio: &Studio) -> ShownSurface {
     ShownSurface {
         shown: &Counted,
         blank: BlankSurface {
+            cells: CELLS,
             ground: crate::ground::Ground::Even(vec![0.95; studio.wavelengths()]),
             relief: Arc::new(Relief::flat(CELL_M)),
             wells: Vec::new(),

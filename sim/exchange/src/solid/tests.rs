@@ -84,6 +84,7 @@ impl Surface {
             bare: ShownSurface {
                 shown: &Overhangs,
                 blank: BlankSurface {
+                    cells: CELLS,
                     ground: Ground::Even(vec![0.9; studio.wavelengths()]),
                     relief: Arc::new(relief),
                     wells: Vec::new(),

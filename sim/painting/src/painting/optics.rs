@@ -123,6 +123,7 @@ impl Optics {
         }
         Ok(ShownSurface {
             blank: BlankSurface {
+                cells: surface.cells,
                 ground,
                 relief,
                 wells,

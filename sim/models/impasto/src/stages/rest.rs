@@ -9,12 +9,14 @@ use super::advection::{Advection, Axis};
 use super::levelling::{Body, Levelling, Paints, Round};
 use super::velocity::Faces;
 
-/// Times of the flows after each other, s: that in which paint sets, and later ones, in each of which about as much goes
-/// as in the one before. A film of thinner has run off ridges by then.
-const FLOWS_S: [f64; 6] = [0.25, 1.0, 1.0, 2.0, 4.0, 9.0];
+/// Time in which paint sets, s.
+const SETS_S: f64 = 0.25;
+/// Time of each later flow, s, and their number: a film of thinner has run off ridges by then.
+const LATER_S: f64 = 1.0;
+const LATER: u32 = 17;
 /// Number of rounds of heights alone before their paint follows at once.
 const ROUNDS: u32 = 16;
-/// Flow per round of a flow of up to a second below which blocks rest, cells; in longer ones more by as much.
+/// Flow per round below which blocks rest, as a share of a cell.
 const RESTS: f32 = 1e-3;
 
 /// Levels the paint of a stroke.
@@ -30,8 +32,9 @@ pub fn level(rest: &mut Rest<'_>) {
     let to_cells = (QUANTUM_M / *cell_m) as f32;
     let (mut levelling, mut advection) = (Levelling::default(), Advection::default());
     let mut faces = Faces::still(area);
-    let mut from_s = 0.0;
-    for (number, lasts_s) in FLOWS_S.into_iter().enumerate() {
+    for number in 0..=LATER {
+        let from_s = SETS_S * f64::from(number.min(1)) + LATER_S * f64::from(number.max(1) - 1);
+        let lasts_s = if number == 0 { SETS_S } else { LATER_S };
         let round = Round::new(
             Body::TUBE,
             *cell_m,
@@ -47,15 +50,13 @@ pub fn level(rest: &mut Rest<'_>) {
         };
         faces.stop();
         let planes = [&mut faces.right[..], &mut faces.above[..]];
-        let rests = RESTS * lasts_s.max(1.0) as f32;
-        let most = levelling.add(window, area, &round, &paints, (ROUNDS, rests), planes);
-        if most < rests {
+        let most = levelling.add(window, area, &round, &paints, (ROUNDS, RESTS), planes);
+        if most < RESTS {
             break;
         }
         let first = if number % 2 == 0 { Axis::X } else { Axis::Y };
         faces.limit(area.size[0]);
         advection.run(*area, &faces, window, first, *stain);
-        from_s += lasts_s;
     }
     let Area { from, size } = *area;
     window.touch((from, [from[0] + size[0], from[1] + size[1]]));
