@@ -1,15 +1,15 @@
-//! The ride of a bristle: no cell within reach is higher than the parabola that rests on it.
+//! The ride of a bristle: no cell within reach is higher than the curve that rests on it.
 
 use maulstick_canvas::relief::Relief;
-use maulstick_canvas::relief::ride::{RADIUS_M, REACH_M, ride};
+use maulstick_canvas::relief::ride::{REACH_M, ride};
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_canvas::store::TileStore;
 use maulstick_canvas::window::Window;
 
 use crate::scene::{Random, window};
 
-/// Tolerance: four roundings of a height of a few cells.
-const TOLERANCE: f64 = 4.0 * 8.0 / 16_777_216.0;
+/// Tolerance: four roundings of a height of 32 cells.
+const TOLERANCE: f64 = 4.0 * 32.0 / 16_777_216.0;
 
 /// Heights in cells, rows of `width`, of cells of `cell_m`.
 struct Ground {
@@ -42,30 +42,52 @@ fn ground(seed: u64, kind: &str, cell_m: f64, most_m: f64) -> Ground {
     }
 }
 
-/// The highest parabola at a cell, cells, over the cells within reach, a disc or a square.
-fn oracle(ground: &Ground, radius_m: f64, [x, y]: [usize; 2], round: bool) -> f64 {
+/// How a bristle hangs: radii of curvature of its length and of its free tip, and where that begins, m.
+#[derive(Clone, Copy)]
+struct Bend {
+    radius_m: f64,
+    free_m: f64,
+    tip_radius_m: f64,
+}
+
+impl Bend {
+    const HOG: Self = Self {
+        radius_m: 28e-3,
+        free_m: 4e-4,
+        tip_radius_m: 1.5e-4,
+    };
+
+    /// How far it hangs below its support at a distance of `off_m`, m.
+    fn at(self, off_m: f64) -> f64 {
+        let of_length = off_m.powi(2) / self.radius_m;
+        let of_tip = (off_m.abs() - self.free_m).max(0.0).powi(2) / self.tip_radius_m;
+        0.5 * (of_length + of_tip)
+    }
+}
+
+/// The highest curve at a cell, cells, over the cells within reach.
+fn oracle(ground: &Ground, bend: Bend, [x, y]: [usize; 2]) -> f64 {
     let reach = (REACH_M / ground.cell_m).ceil() as i64;
     let rows = (ground.base.len() / ground.width) as i64;
     let mut highest = f64::MIN;
     for dy in -reach..=reach {
         for dx in -reach..=reach {
             let (i, j) = (x as i64 + dx, y as i64 + dy);
-            let off_m2 = (dx * dx + dy * dy) as f64 * ground.cell_m * ground.cell_m;
-            let inside = i >= 0 && j >= 0 && i < ground.width as i64 && j < rows;
-            if !inside || round && off_m2 > REACH_M * REACH_M {
+            if i < 0 || j < 0 || i >= ground.width as i64 || j >= rows {
                 continue;
             }
             let base = ground.base[j as usize * ground.width + i as usize];
-            highest = highest.max(f64::from(base) - off_m2 / (2.0 * radius_m * ground.cell_m));
+            let hang = [dx, dy].map(|d| bend.at(d as f64 * ground.cell_m) / ground.cell_m);
+            highest = highest.max(f64::from(base) - hang[0] - hang[1]);
         }
     }
     highest
 }
 
-fn agrees(ground: &Ground, ride: &[f32], radius_m: f64, round: bool) -> bool {
+fn agrees(ground: &Ground, ride: &[f32], bend: Bend) -> bool {
     let width = ground.width;
     (0..ride.len()).all(|place| {
-        let want = oracle(ground, radius_m, [place % width, place / width], round);
+        let want = oracle(ground, bend, [place % width, place / width]);
         (f64::from(ride[place]) - want).abs() <= TOLERANCE
     })
 }
@@ -75,29 +97,44 @@ fn ridden(ground: &Ground) -> Vec<f32> {
 }
 
 #[test]
-fn a_bristle_lies_on_the_highest_parabola() {
+fn a_bristle_lies_on_the_highest_curve() {
+    let hog = Bend::HOG;
+    let faults = [
+        Bend {
+            radius_m: 1.02 * hog.radius_m,
+            ..hog
+        },
+        Bend {
+            free_m: 1.02 * hog.free_m,
+            ..hog
+        },
+        Bend {
+            tip_radius_m: 1.02 * hog.tip_radius_m,
+            ..hog
+        },
+    ];
     for (seed, kind) in (0..).zip(["linen", "cotton", "panel", "paper"]) {
-        let cell_m = [2.5e-4, 5e-4][seed as usize % 2];
-        // A cell below its parabola at the reach carries no bristle beyond, so the reach may be a disc.
-        let low = ground(
-            seed,
-            kind,
-            cell_m,
-            0.6 * REACH_M * REACH_M / (2.0 * RADIUS_M),
-        );
-        let ride = ridden(&low);
-        assert!(agrees(&low, &ride, RADIUS_M, true), "{kind}");
-        assert!(
-            !agrees(&low, &ride, 1.02 * RADIUS_M, true),
-            "another bend passes"
-        );
-        assert!(!agrees(&low, &low.base, RADIUS_M, true), "no ride passes");
-        let high = ground(seed, kind, cell_m, 4e-3);
-        assert!(
-            agrees(&high, &ridden(&high), RADIUS_M, false),
-            "{kind}, high"
-        );
+        let cell_m = [1.25e-4, 2.5e-4][seed as usize % 2];
+        let ground = ground(seed, kind, cell_m, 4e-3);
+        let ride = ridden(&ground);
+        assert!(agrees(&ground, &ride, hog), "{kind}");
+        for fault in faults {
+            assert!(!agrees(&ground, &ride, fault), "another bend passes");
+        }
+        assert!(!agrees(&ground, &ground.base, hog), "no ride passes");
     }
+}
+
+/// A stroke that leaves a ridge of dry paint has bare ground behind it for a millimetre at most.
+#[test]
+fn a_tip_is_on_the_ground_a_millimetre_from_a_cliff() {
+    let (cell_m, cliff_m) = (6.25e-5, 7e-4);
+    let mut base = vec![0.0; 64];
+    base[..16].fill((cliff_m / cell_m) as f32);
+    let ride = ride(&base, 64, 1.0 / cell_m);
+    let hung = ride[16..].iter().take_while(|height| **height > 0.0);
+    let hung_mm = 1e3 * cell_m * hung.count() as f64;
+    assert!((0.6..=1.0).contains(&hung_mm), "{hung_mm} mm");
 }
 
 /// On flat ground the ride is the ground, also far above or below, and on less than a row.

@@ -1,7 +1,9 @@
 //! Changes the light, or how it becomes colour.
 
 use maulstick_types::EditFields;
-use maulstick_types::scene::{self, Light, LightError};
+#[cfg(feature = "cli")]
+use maulstick_types::scene;
+use maulstick_types::scene::{Light, LightError};
 #[cfg(feature = "cli")]
 use maulstick_types::values::Quantity as _;
 use maulstick_types::values::ValueError;
