@@ -1,29 +1,83 @@
 //! Smooth noise from a seed: the same bytes on every machine.
 
-/// Value noise on lattices of side 1, with independent channels.
-#[derive(Clone, Copy, Debug, PartialEq)]
+use std::cell::Cell;
+
+/// Number of channels.
+const CHANNELS: usize = 32;
+/// Number of neighbouring lines of a channel whose corners are kept.
+const LINES: usize = 4;
+
+/// The values at the corners of a lattice square.
+#[derive(Clone, Copy, Debug, Default)]
+struct Corners {
+    /// Its lower left corner; nothing is kept at first.
+    at: Option<[i64; 2]>,
+    values: [f64; 4],
+}
+
+/// Value noise on lattices of side 1, with independent channels, up to 31. The corners of the last squares are kept:
+/// the next place mostly lies between them again.
+#[derive(Clone, Debug)]
 pub(crate) struct LatticeNoise {
     /// Seed of all values.
-    pub(crate) seed: u64,
+    seed: u64,
+    last: [Cell<Corners>; CHANNELS * LINES],
 }
 
 impl LatticeNoise {
+    /// The noise of a seed.
+    pub(crate) fn new(seed: u64) -> Self {
+        let last = [const {
+            Cell::new(Corners {
+                at: None,
+                values: [0.0; 4],
+            })
+        }; CHANNELS * LINES];
+        Self { seed, last }
+    }
+
     /// Noise at a place, 0 to 1.
     #[must_use]
     pub(crate) fn at(&self, channel: u64, [x, y]: [f64; 2]) -> f64 {
         let (i, j) = (x.floor(), y.floor());
         let (u, v) = (ease(x - i), ease(y - j));
-        let corner = |di: i64, dj: i64| self.hash(channel, [i as i64 + di, j as i64 + dj]);
-        let row = |dj: i64| corner(0, dj) + (corner(1, dj) - corner(0, dj)) * u;
-        row(0) + (row(1) - row(0)) * v
+        let (i, j) = (i as i64, j as i64);
+        let [low, low_right, high, high_right] = self.corners(channel, 0, [i, j], || {
+            [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[di, dj]| self.hash(channel, [i + di, j + dj]))
+        });
+        let (below, above) = (low + (low_right - low) * u, high + (high_right - high) * u);
+        below + (above - below) * v
     }
 
     /// Noise along the line of number `line`, 0 to 1; lines are independent.
     #[must_use]
     pub(crate) fn along(&self, channel: u64, line: i64, x: f64) -> f64 {
         let i = x.floor();
-        let [from, to] = [0, 1].map(|di| self.hash(channel, [i as i64 + di, line]));
+        let [from, to, ..] = self.corners(channel, line, [i as i64, line], || {
+            let [from, to] = [0, 1].map(|di| self.hash(channel, [i as i64 + di, line]));
+            [from, to, 0.0, 0.0]
+        });
         from + (to - from) * ease(x - i)
+    }
+
+    /// The values of a square, from the last time or computed.
+    fn corners(
+        &self,
+        channel: u64,
+        line: i64,
+        at: [i64; 2],
+        values: impl Fn() -> [f64; 4],
+    ) -> [f64; 4] {
+        let kept = &self.last[channel as usize * LINES + line.rem_euclid(LINES as i64) as usize];
+        let mut corners = kept.get();
+        if corners.at != Some(at) {
+            corners = Corners {
+                at: Some(at),
+                values: values(),
+            };
+            kept.set(corners);
+        }
+        corners.values
     }
 
     /// A number in 0 to 1 for each lattice point (finaliser of Murmur 3, Appleby).

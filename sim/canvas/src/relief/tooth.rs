@@ -105,6 +105,7 @@ impl Tooth {
         let rooks: Vec<[f64; 2]> = (0..count)
             .map(|i| [(f64::from(i) + 0.5) / samples, share(i.reverse_bits())])
             .collect();
+        let noise = LatticeNoise::new(self.seed);
         let mut heights = Vec::with_capacity(TILE_CELLS);
         for y in 0..TILE {
             for x in 0..TILE {
@@ -113,7 +114,9 @@ impl Tooth {
                     f64::from(id.y) * TILE as f64 + y as f64,
                 ];
                 let sum: f64 = (rooks.iter())
-                    .map(|rook| self.height_m([0, 1].map(|i| (corner[i] + rook[i]) * self.cell_m)))
+                    .map(|rook| {
+                        self.height_m(&noise, [0, 1].map(|i| (corner[i] + rook[i]) * self.cell_m))
+                    })
                     .sum();
                 heights.push((sum / samples) as f32);
             }
@@ -122,31 +125,25 @@ impl Tooth {
     }
 
     /// Height at a place of the surface, m: from −depth to 0.
-    #[must_use]
-    pub fn height_m(&self, at: [f64; 2]) -> f64 {
+    fn height_m(&self, noise: &LatticeNoise, at: [f64; 2]) -> f64 {
         let share = match self.kind.make {
             Make::Woven { pitch_m, slubs } => {
-                let noise = self.noise();
                 Weave { noise, slubs }.height(at.map(|m| m / pitch_m))
             }
-            Make::Grained { size_m } => self.grain(at.map(|m| m / size_m)),
+            Make::Grained { size_m } => grain(noise, at.map(|m| m / size_m)),
         };
         self.kind.depth_m * (share.clamp(0.0, 1.0) - 1.0)
     }
+}
 
-    /// Noise of four octaves, 0 to 1.
-    fn grain(&self, at: [f64; 2]) -> f64 {
-        let (mut sum, mut weight, mut scale) = (0.0, 0.5, 1.0);
-        for octave in 0..4 {
-            sum += weight * self.noise().at(20 + octave, at.map(|v| v * scale));
-            (weight, scale) = (0.5 * weight, 2.1 * scale);
-        }
-        sum / 0.9375
+/// Noise of four octaves, 0 to 1.
+fn grain(noise: &LatticeNoise, at: [f64; 2]) -> f64 {
+    let (mut sum, mut weight, mut scale) = (0.0, 0.5, 1.0);
+    for octave in 0..4 {
+        sum += weight * noise.at(20 + octave, at.map(|v| v * scale));
+        (weight, scale) = (0.5 * weight, 2.1 * scale);
     }
-
-    fn noise(&self) -> LatticeNoise {
-        LatticeNoise { seed: self.seed }
-    }
+    sum / 0.9375
 }
 
 #[cfg(test)]

@@ -8,15 +8,13 @@
 use super::lattice_noise::{LatticeNoise, ease};
 
 /// Variation of the width of a thread, in thread spacings.
-const UNEVEN: f64 = 0.26;
+const UNEVEN: f64 = 0.3;
 /// Common wander of all threads.
 const WANDER: f64 = 0.3;
 /// Sine and cosine of the angle of the threads against the cells: 4°.
 const TURNED: [f64; 2] = [0.069_756_474, 0.997_564_05];
-/// Range of the drift of the threads, in thread spacings.
-const DRIFT: f64 = 4.0;
-/// Waves of the drift per thread spacing, across and along.
-const DRIFT_WAVES: [f64; 2] = [0.05, 0.02];
+/// Two drifts of the threads: their range in thread spacings, and their waves per thread spacing, across and along.
+const DRIFTS: [(f64, [f64; 2]); 2] = [(2.0, [0.13, 0.02]), (1.3, [0.31, 0.05])];
 /// Extra width of a thread at its slub.
 const SLUB_WIDTH: f64 = 0.34;
 /// Length of a slub with the thin stretch to the next, in thread spacings.
@@ -27,10 +25,10 @@ const GESSO: [f64; 2] = [0.24, 0.1];
 const MENISCUS: f64 = 0.24;
 
 /// A weave with a mean thread spacing of 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Weave {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Weave<'a> {
     /// Its randomness.
-    pub noise: LatticeNoise,
+    pub noise: &'a LatticeNoise,
     /// Share of the threads' length that is slubs, 0 to 1.
     pub slubs: f64,
 }
@@ -52,10 +50,10 @@ impl Thread {
     }
 }
 
-impl Weave {
+impl Weave<'_> {
     /// Height at a place, about 0 to 1.
     pub(crate) fn height(&self, [x, y]: [f64; 2]) -> f64 {
-        let noise = &self.noise;
+        let noise = self.noise;
         let [x, y] = self.laid([x, y]);
         let wander = |axis: u64, along: f64, across: f64| {
             WANDER * (noise.at(axis, [0.31 * across, 0.11 * along]) - 0.5)
@@ -81,8 +79,10 @@ impl Weave {
         let [sine, cosine] = TURNED;
         let [x, y] = [x * cosine - y * sine, x * sine + y * cosine];
         let drift = |axis: u64, along: f64, across: f64| {
-            let place = [DRIFT_WAVES[0] * across, DRIFT_WAVES[1] * along];
-            DRIFT * (self.noise.at(axis, place) - 0.5)
+            let [far, near] =
+                DRIFTS.map(|(range, waves)| (range, [waves[0] * across, waves[1] * along]));
+            far.0 * (self.noise.at(axis, far.1) - 0.5)
+                + near.0 * (self.noise.at(axis + 4, near.1) - 0.5)
         };
         [x + drift(21, y, x), y + drift(22, x, y)]
     }
@@ -133,11 +133,9 @@ fn smooth_max(a: f64, b: f64, width: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn weave(slubs: f64) -> Weave {
-        Weave {
-            noise: LatticeNoise { seed: 5 },
-            slubs,
-        }
+    fn weave(slubs: f64) -> Weave<'static> {
+        let noise = Box::leak(Box::new(LatticeNoise::new(5)));
+        Weave { noise, slubs }
     }
 
     #[test]
