@@ -202,7 +202,7 @@ impl BrushTraits {
     #[must_use]
     pub fn pressed(mut self, press: f32) -> Self {
         let squeezed = (press / SQUEEZED_AT).clamp(0.0, 1.0);
-        self.film_cells_per_quantum *= 1.0 - self.exchanging.holds * (1.0 - squeezed);
+        self.film_cells_per_quantum *= 1.0 - self.exchanging.holds * (1.0 - squeezed * squeezed);
         self
     }
 
