@@ -40,7 +40,7 @@ impl Exchanging {
         most: MAX_TRANSFER,
         swap: 2.55,
         glides: 1.0,
-        holds: 0.82,
+        holds: 0.6,
     };
     /// Soft hair that comes to a point: its paint hangs in a drop.
     pub(crate) const SOFT: Self = Self {

@@ -8,13 +8,15 @@
 use super::lattice_noise::{LatticeNoise, ease};
 
 /// Variation of the width of a thread, in thread spacings.
-const UNEVEN: f64 = 0.3;
+const UNEVEN: f64 = 0.26;
 /// Common wander of all threads.
 const WANDER: f64 = 0.3;
 /// Sine and cosine of the angle of the threads against the cells: 4°.
 const TURNED: [f64; 2] = [0.069_756_474, 0.997_564_05];
-/// Two drifts of the threads: their range in thread spacings, and their waves per thread spacing, across and along.
-const DRIFTS: [(f64, [f64; 2]); 2] = [(2.0, [0.13, 0.02]), (1.3, [0.31, 0.05])];
+/// Range of the drift of the threads, in thread spacings.
+const DRIFT: f64 = 4.0;
+/// Waves of the drift per thread spacing, across and along.
+const DRIFT_WAVES: [f64; 2] = [0.05, 0.02];
 /// Extra width of a thread at its slub.
 const SLUB_WIDTH: f64 = 0.34;
 /// Length of a slub with the thin stretch to the next, in thread spacings.
@@ -79,10 +81,8 @@ impl Weave<'_> {
         let [sine, cosine] = TURNED;
         let [x, y] = [x * cosine - y * sine, x * sine + y * cosine];
         let drift = |axis: u64, along: f64, across: f64| {
-            let [far, near] =
-                DRIFTS.map(|(range, waves)| (range, [waves[0] * across, waves[1] * along]));
-            far.0 * (self.noise.at(axis, far.1) - 0.5)
-                + near.0 * (self.noise.at(axis + 4, near.1) - 0.5)
+            let place = [DRIFT_WAVES[0] * across, DRIFT_WAVES[1] * along];
+            DRIFT * (self.noise.at(axis, place) - 0.5)
         };
         [x + drift(21, y, x), y + drift(22, x, y)]
     }
