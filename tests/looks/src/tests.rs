@@ -200,3 +200,36 @@ fn strokes_past_the_border_leave_no_strip() {
     println!("{past:.2} past, {along:.2} along the border");
     assert!(past < 1.1 && along > 1.1, "{past} {along}");
 }
+
+/// A stroke across a band of dry paint covers the ground on both sides of it, too.
+#[test]
+fn a_stroke_comes_down_beside_dry_paint() {
+    use crate::easel::{Easel, Stroke, brush};
+    let flat = brush("flat", 14.0).expect("flat");
+    let mut easel = Easel::new([60.0, 40.0], 0.125, "panel", flat).expect("easel");
+    let band = Stroke {
+        from: [30.0, -6.0],
+        to: [30.0, 46.0],
+        ..Stroke::along(20.0, 0.0, 0.0, 0.2)
+    };
+    for _ in 0..4 {
+        easel.load("Titanium White").expect("loaded");
+        easel.stroke(&band).expect("painted");
+    }
+    easel.dry().expect("dried");
+    let ridge = easel.ground().cut([28.0, 16.0], [32.0, 24.0]).mean();
+    easel.load("Ultramarine Blue").expect("loaded");
+    easel
+        .stroke(&Stroke::along(20.0, 10.0, 50.0, 0.3))
+        .expect("painted");
+    let film = easel.film(None);
+    let covered = (15..45).map(|mm| {
+        let at = f64::from(mm);
+        let cells = film.cut([at, 17.0], [at + 1.0, 23.0]).cells;
+        let count = cells.iter().filter(|um| **um > 3.0).count();
+        count as f64 / cells.len() as f64
+    });
+    let least = covered.fold(1.0, f64::min);
+    println!("{ridge:.0} µm high, {least:.2} covered");
+    assert!(ridge > 400.0 && least > 0.7, "{ridge} {least}");
+}
