@@ -3,12 +3,12 @@
 //! A bristle is stiff along its length, so it bridges gaps narrower than its bend: its lower side is the upper envelope
 //! of the relief under one curve (grey dilation, separable where the curve is a sum over both axes; van den Boomgaard
 //! and Smeulders 1994). It hangs by d²/2ρ at a distance of d, and where its tip is free by (d − f)²/2ρ′ more: tooth is
-//! bridged from thread to thread, and beside a cliff of .7 mm the tip is on the ground after a millimetre.
+//! bridged from thread to thread, and beside a cliff of .7 mm the tip is on the ground after .9 mm.
 
 /// Radius of curvature to which a bristle bends under the hand, ρ, m.
 pub const RADIUS_M: f64 = 28e-3;
-/// Distance from its support beyond which a bristle is a free tip, f, m: more than half the way between two threads.
-pub const FREE_M: f64 = 0.5e-3;
+/// Distance from its support beyond which a bristle is a free tip, f, m: half the way between two threads.
+pub const FREE_M: f64 = 0.4e-3;
 /// Radius of curvature of a free tip, ρ′, m.
 pub const TIP_RADIUS_M: f64 = 0.15e-3;
 /// Greatest distance over which a ridge carries a bristle, m.

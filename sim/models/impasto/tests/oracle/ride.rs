@@ -53,7 +53,7 @@ struct Bend {
 impl Bend {
     const HOG: Self = Self {
         radius_m: 28e-3,
-        free_m: 5e-4,
+        free_m: 4e-4,
         tip_radius_m: 1.5e-4,
     };
 
