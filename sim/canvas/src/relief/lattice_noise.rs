@@ -1,5 +1,6 @@
 //! Smooth noise from a seed: the same bytes on every machine.
 
+use std::array;
 use std::cell::Cell;
 
 /// Number of channels.
@@ -10,14 +11,15 @@ const LINES: usize = 4;
 /// The values at the corners of a lattice square.
 #[derive(Clone, Copy, Debug, Default)]
 struct Corners {
-    /// Its lower left corner; nothing is kept at first.
+    /// Its lower left corner; `None` before any is known.
     at: Option<[i64; 2]>,
+    /// Lower left, lower right, upper left, upper right.
     values: [f64; 4],
 }
 
-/// Value noise on lattices of side 1, with independent channels, up to 31. The corners of the last squares are kept:
+/// Value noise on lattices of side 1, with [`CHANNELS`] independent channels. The corners of the last squares are kept:
 /// the next place mostly lies between them again.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct LatticeNoise {
     /// Seed of all values.
     seed: u64,
@@ -27,12 +29,7 @@ pub(crate) struct LatticeNoise {
 impl LatticeNoise {
     /// The noise of a seed.
     pub(crate) fn new(seed: u64) -> Self {
-        let last = [const {
-            Cell::new(Corners {
-                at: None,
-                values: [0.0; 4],
-            })
-        }; CHANNELS * LINES];
+        let last = array::from_fn(|_| Cell::default());
         Self { seed, last }
     }
 
@@ -41,10 +38,7 @@ impl LatticeNoise {
     pub(crate) fn at(&self, channel: u64, [x, y]: [f64; 2]) -> f64 {
         let (i, j) = (x.floor(), y.floor());
         let (u, v) = (ease(x - i), ease(y - j));
-        let (i, j) = (i as i64, j as i64);
-        let [low, low_right, high, high_right] = self.corners(channel, 0, [i, j], || {
-            [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[di, dj]| self.hash(channel, [i + di, j + dj]))
-        });
+        let [low, low_right, high, high_right] = self.corners(channel, [i as i64, j as i64]);
         let (below, above) = (low + (low_right - low) * u, high + (high_right - high) * u);
         below + (above - below) * v
     }
@@ -53,31 +47,24 @@ impl LatticeNoise {
     #[must_use]
     pub(crate) fn along(&self, channel: u64, line: i64, x: f64) -> f64 {
         let i = x.floor();
-        let [from, to, ..] = self.corners(channel, line, [i as i64, line], || {
-            let [from, to] = [0, 1].map(|di| self.hash(channel, [i as i64 + di, line]));
-            [from, to, 0.0, 0.0]
-        });
+        let [from, to, ..] = self.corners(channel, [i as i64, line]);
         from + (to - from) * ease(x - i)
     }
 
-    /// The values of a square, from the last time or computed.
-    fn corners(
-        &self,
-        channel: u64,
-        line: i64,
-        at: [i64; 2],
-        values: impl Fn() -> [f64; 4],
-    ) -> [f64; 4] {
-        let kept = &self.last[channel as usize * LINES + line.rem_euclid(LINES as i64) as usize];
-        let mut corners = kept.get();
-        if corners.at != Some(at) {
-            corners = Corners {
-                at: Some(at),
-                values: values(),
-            };
-            kept.set(corners);
+    /// The values of the square with this lower left corner.
+    fn corners(&self, channel: u64, [i, j]: [i64; 2]) -> [f64; 4] {
+        let kept = &self.last[channel as usize * LINES + j.rem_euclid(LINES as i64) as usize];
+        let known = kept.get();
+        if known.at == Some([i, j]) {
+            return known.values;
         }
-        corners.values
+        let values =
+            [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[di, dj]| self.hash(channel, [i + di, j + dj]));
+        kept.set(Corners {
+            at: Some([i, j]),
+            values,
+        });
+        values
     }
 
     /// A number in 0 to 1 for each lattice point (finaliser of Murmur 3, Appleby).

@@ -6,17 +6,16 @@
 //! bridged from thread to thread, and beside a cliff of .7 mm the tip is on the ground after .9 mm.
 
 /// Radius of curvature to which a bristle bends under the hand, ρ, m.
-pub const RADIUS_M: f64 = 28e-3;
+const RADIUS_M: f64 = 28e-3;
 /// Distance from its support beyond which a bristle is a free tip, f, m: half the way between two threads.
-pub const FREE_M: f64 = 0.4e-3;
+const FREE_M: f64 = 0.4e-3;
 /// Radius of curvature of a free tip, ρ′, m.
-pub const TIP_RADIUS_M: f64 = 0.15e-3;
+const TIP_RADIUS_M: f64 = 0.15e-3;
 /// Greatest distance over which a ridge carries a bristle, m.
 pub const REACH_M: f64 = 1.5e-3;
 
 /// How far a bristle hangs below its support at a distance of `off_m`, m.
-#[must_use]
-pub fn hang_m(off_m: f64) -> f64 {
+fn hang_m(off_m: f64) -> f64 {
     let free = (off_m - FREE_M).max(0.0);
     off_m * off_m / (2.0 * RADIUS_M) + free * free / (2.0 * TIP_RADIUS_M)
 }

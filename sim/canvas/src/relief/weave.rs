@@ -133,15 +133,11 @@ fn smooth_max(a: f64, b: f64, width: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn weave(slubs: f64) -> Weave<'static> {
-        let noise = Box::leak(Box::new(LatticeNoise::new(5)));
-        Weave { noise, slubs }
-    }
-
     #[test]
     fn threads_are_uneven_and_slubs_push_their_neighbours_aside() {
         let widths = |slubs: f64, along: f64| -> Vec<f64> {
-            let weave = weave(slubs);
+            let noise = &LatticeNoise::new(5);
+            let weave = Weave { noise, slubs };
             let mut edges = Vec::new();
             let mut last = weave.thread(3, 0.0, along).number;
             for step in 1..40_000 {
@@ -171,7 +167,8 @@ mod tests {
     #[test]
     fn the_surface_has_no_steps_but_where_threads_cross() {
         // At the boundary between threads both backs are at 0: gesso joins them.
-        let weave = weave(0.3);
+        let noise = &LatticeNoise::new(5);
+        let weave = Weave { noise, slubs: 0.3 };
         let row: Vec<f64> = (0..60_000)
             .map(|i| weave.height([f64::from(i) * 1e-3, 7.3]))
             .collect();
