@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use maulstick_optics::light::gloss::dry_gloss;
-use maulstick_optics::oil::{USUAL, oil_share};
+use maulstick_optics::oil::USUAL;
 use maulstick_optics::{Paint, Studio};
 use maulstick_types::scene::Layer;
 
@@ -14,6 +14,8 @@ pub struct Appearance {
     pub studio: Studio,
     /// Slot of the thinner, if it is in use.
     pub thinner: Option<usize>,
+    /// Slots of varnishes in use.
+    pub varnishes: Vec<usize>,
     /// Gloss of dry paint by slot.
     glosses: BTreeMap<usize, f32>,
     /// Factor on the optical thickness of dry layers by number, where it is not 1.
@@ -30,6 +32,7 @@ impl Appearance {
         Self {
             studio,
             thinner: None,
+            varnishes: Vec::new(),
             glosses: BTreeMap::new(),
             opacities: BTreeMap::new(),
             relief: 1.0,
@@ -38,13 +41,15 @@ impl Appearance {
         }
     }
 
-    /// Registers the paint in a slot: whether it is the thinner, and its gloss once dry.
+    /// Registers the paint in a slot: whether it is the thinner or a varnish, and its gloss once dry.
     pub fn register(&mut self, slot: usize, paint: &Paint) {
         if paint.is_thinner() {
             self.thinner = Some(slot);
         }
-        let gloss = dry_gloss(oil_share(&paint.colour_index));
-        self.glosses.insert(slot, gloss);
+        if paint.is_varnish() && !self.varnishes.contains(&slot) {
+            self.varnishes.push(slot);
+        }
+        self.glosses.insert(slot, paint.dry_gloss());
     }
 
     /// Gloss of the paint in a slot once it is dry.

@@ -1,10 +1,12 @@
 //! A blank surface and the display of its paint model: films, baked layers and whole tiles on it.
 
+use std::borrow::Cow;
 use std::ops::Deref;
 use std::sync::Arc;
 
 use maulstick_canvas::dry::DryStack;
 use maulstick_canvas::planes::TILE_CELLS;
+use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::sheet::sheets;
 use maulstick_canvas::tile::{Tile, TileId};
 
@@ -73,8 +75,25 @@ impl ShownSurface {
     }
 
     /// Lets the ground show beside paint that covers a cell in part.
-    fn uncover(&self, id: TileId, look: &Appearance, shown: &mut DisplayTile) {
-        let Some(covers) = covers(&shown.height, self.cells_of(id)) else {
+    fn uncover(
+        &self,
+        id: TileId,
+        look: &Appearance,
+        dry: Option<&Arc<DryStack>>,
+        shown: &mut DisplayTile,
+    ) {
+        // Varnish lies on the ground as well, and is no paint with an edge.
+        let mut paint = Cow::Borrowed(&shown.height);
+        let layers = dry.filter(|_| !look.varnishes.is_empty());
+        for layer in layers.into_iter().flat_map(|stack| stack.layers()) {
+            for (slot, plane) in &*layer.planes.get() {
+                if look.varnishes.contains(slot) {
+                    let cells = paint.to_mut().iter_mut().zip(plane.iter());
+                    cells.for_each(|(height, count)| *height -= count * QUANTUM_M as f32);
+                }
+            }
+        }
+        let Some(covers) = covers(&paint, self.cells_of(id)) else {
             return;
         };
         let bare = WetFilms::default().shade(&look.studio, self.ground.tile(id).under());
@@ -99,7 +118,7 @@ impl ShownSurface {
         let own = (!is_shaded).then(|| WetFilms::of(tile));
         let mut shown = DisplayTile::of(tile, (own.as_ref().unwrap_or(films), rgb), look);
         if is_shaded {
-            self.uncover(id, look, &mut shown);
+            self.uncover(id, look, tile.and_then(Tile::dry), &mut shown);
         }
         if let Some(tile) = tile {
             let seen = Seen {

@@ -98,7 +98,8 @@ pub fn plane_counts(planes: &Planes) -> Counts {
 }
 
 /// The planes with any paint.
-pub(crate) fn painted(planes: impl Iterator<Item = (usize, Arc<[f32]>)>) -> Planes {
+#[must_use]
+pub fn painted(planes: impl Iterator<Item = (usize, Arc<[f32]>)>) -> Planes {
     planes
         .filter(|(_, plane)| plane.iter().any(|count| *count != 0.0))
         .collect()

@@ -77,7 +77,7 @@ pub use backend::{BackendError, CpuFilms, FilmBackend};
 pub use cie::{Illuminant, Observer};
 pub use mixing::{body, comparison, km, matching, mixture, oil, paints, search, surface, thinning};
 pub use mixture::{Blend, Coat, Layer};
-pub use paints::{Paint, PaintError, PaintLibrary, THINNER};
+pub use paints::{Paint, PaintError, PaintLibrary, THINNER, VARNISHES};
 pub use rule::SamplingRule;
 pub use spectra::{cie, quadrature, rule, spectrum, spectrum_error, spectrum_file, upsampling};
 pub use spectrum::Spectrum;

@@ -6,6 +6,8 @@ use maulstick_tables::{HeadingLine, Table, shown};
 use maulstick_types::{Mixture, MixtureError};
 
 use crate::body::PaintBody;
+use crate::light::gloss::dry_gloss;
+use crate::oil::oil_share;
 use crate::spectrum::Spectrum;
 
 /// Scattering of titanium white, per metre: over black 25 µm reflect .79, 100 µm .94.
@@ -35,16 +37,38 @@ pub struct Paint {
 /// Name of the thinner, which every palette has: a medium without absorption and scattering.
 pub const THINNER: &str = "Thinner";
 
+/// The varnishes, clear like the thinner, and their gloss once dry.
+pub const VARNISHES: [(&str, f32); 2] = [("Gloss Varnish", 0.95), ("Matt Varnish", 0.1)];
+
+/// Names of what every palette has besides the paints of a file.
+const MEDIUMS: [&str; 3] = [THINNER, VARNISHES[0].0, VARNISHES[1].0];
+
 impl Paint {
-    fn thinner() -> Self {
+    fn medium(name: &str) -> Self {
         Self {
-            name: THINNER.to_owned(),
+            name: name.to_owned(),
             colour_index: String::new(),
             source: "transparent by definition".to_owned(),
             k: Spectrum::flat(0.0),
             s: Spectrum::flat(0.0),
             body: PaintBody::FLUID,
         }
+    }
+
+    /// Gloss of its dry film, 0 to 1: a varnish's own, else by the oil that its pigments need.
+    #[must_use]
+    pub fn dry_gloss(&self) -> f32 {
+        let varnish = VARNISHES.iter().find(|(name, _)| *name == self.name);
+        varnish.map_or_else(
+            || dry_gloss(oil_share(&self.colour_index)),
+            |(_, gloss)| *gloss,
+        )
+    }
+
+    /// True if it is a varnish.
+    #[must_use]
+    pub fn is_varnish(&self) -> bool {
+        VARNISHES.iter().any(|(name, _)| *name == self.name)
     }
 
     /// True if it is the thinner.
@@ -153,9 +177,9 @@ pub enum PaintNameError {
     /// A character with which mixtures are written, or a control character.
     #[error("the name '{0}' has one of = , \" in it, with which mixtures are written")]
     Character(String),
-    /// The name of the thinner.
-    #[error("'{THINNER}' is the medium that every palette has; choose another name for the paint")]
-    Thinner,
+    /// The name of a medium.
+    #[error("'{0}' is a medium that every palette has; choose another name for the paint")]
+    Medium(&'static str),
 }
 
 /// Checks that a paint may have this name: mixtures are written with it.
@@ -169,8 +193,8 @@ pub fn check_paint_name(name: &str) -> Result<(), PaintNameError> {
         Err(PaintNameError::Long(name.len()))
     } else if name.contains(['=', ',', '"']) || name.contains(char::is_control) {
         Err(PaintNameError::Character(name.to_owned()))
-    } else if name.eq_ignore_ascii_case(THINNER) {
-        Err(PaintNameError::Thinner)
+    } else if let Some(medium) = MEDIUMS.iter().find(|own| name.eq_ignore_ascii_case(own)) {
+        Err(PaintNameError::Medium(medium))
     } else {
         Ok(())
     }
@@ -197,7 +221,7 @@ struct Found {
 #[derive(Clone, Debug, PartialEq)]
 pub struct PaintLibrary {
     paints: Vec<Paint>,
-    thinner: Paint,
+    mediums: [Paint; 3],
     hash: u32,
     text: std::sync::Arc<str>,
 }
@@ -272,13 +296,13 @@ impl PaintLibrary {
         }
         Ok(Self {
             paints,
-            thinner: Paint::thinner(),
+            mediums: MEDIUMS.map(Paint::medium),
             hash: maulstick_types::name_hash(text),
             text: text.into(),
         })
     }
 
-    /// All paints, in the order of the file; the thinner is none of them.
+    /// All paints, in the order of the file; the mediums are none of them.
     #[must_use]
     pub fn paints(&self) -> &[Paint] {
         &self.paints
@@ -301,7 +325,7 @@ impl PaintLibrary {
     /// # Errors
     /// [`PaintError::Unknown`] with the nearest name.
     pub fn find(&self, name: &str) -> Result<&Paint, PaintError> {
-        let all = || self.paints.iter().chain([&self.thinner]);
+        let all = || self.paints.iter().chain(&self.mediums);
         if let Some(paint) = all().find(|p| p.name.eq_ignore_ascii_case(name)) {
             return Ok(paint);
         }
@@ -385,7 +409,7 @@ mod tests {
             (String::new(), 1, FileFault::Empty),
             (format!("{}\n{}", row("K", "1"), row("K", "2")), 2, twice),
             (named("a=b"), 1, character.into()),
-            (named("thinner"), 1, PaintNameError::Thinner.into()),
+            (named("thinner"), 1, PaintNameError::Medium(THINNER).into()),
             (named(" "), 1, PaintNameError::Blank.into()),
             (
                 format!("paint,i,s,q{}", ",380".repeat(SAMPLES)),

@@ -26,7 +26,7 @@ pub use brush::{Clean, Handle, Load, LoadFrom, Tune};
 pub use form::CommandForm;
 pub use form::{Form, StepForm};
 pub use history::{Branch, Forget, GoTo, Keep, Redo, ReturnTo, Undo};
-pub use layer::{Dry, LayerRef, NameLayer, Opacity, StopDrying, Wet};
+pub use layer::{Dry, Finish, LayerRef, NameLayer, Opacity, StopDrying, Varnish, Wet};
 pub use registry::{EditEntry, entries, read};
 pub use surface::{
     Convert, Exposure, Fill, FillPaint, Flip, Ground, GroundSource, LightChange, Piles, Place,
@@ -47,7 +47,7 @@ macro_rules! for_each_edit {
     ($with:ident) => {
         $with! {
             Load, LoadFrom, Clean, Tune, Handle,
-            Dry, StopDrying, Wet, Opacity, NameLayer,
+            Dry, StopDrying, Wet, Varnish, Opacity, NameLayer,
             Place, Relight, Ground, Tooth, Size, Piles, Fill, Scrape, Wells, Convert, Flip,
             Undo, Redo, Keep, ReturnTo, Branch, Forget, GoTo
         }

@@ -107,10 +107,10 @@ mod tests {
                 "{words}"
             );
         }
-        let other = Edit::named("varnish", &json!({}));
+        let other = Edit::named("gild", &json!({}));
         assert_eq!(
             read(&other).err(),
-            Some(EditFault::Unknown("varnish".to_owned()))
+            Some(EditFault::Unknown("gild".to_owned()))
         );
     }
 

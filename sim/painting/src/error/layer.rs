@@ -12,6 +12,12 @@ pub enum LayerError {
     /// Nothing to make wet again.
     #[error("nothing has dried{}", within(.0.as_ref()))]
     NothingDry(Option<Region>),
+    /// No place for varnish.
+    #[error("all paint{} is wet, and varnish goes on dry paint", within(.0.as_ref()))]
+    AllWet(Option<Region>),
+    /// No varnish to take off.
+    #[error("no varnish lies uppermost{}", within(.0.as_ref()))]
+    NoVarnish(Option<Region>),
     /// No room for paint that is to be wet again.
     #[error("no cell{} has room for more wet paint", within(.0.as_ref()))]
     NoRoom(Option<Region>),
@@ -49,7 +55,8 @@ impl LayerError {
     pub fn advice(&self) -> Advice {
         match self {
             Self::NothingWet(_) => Advice::say("paint something first"),
-            Self::NothingDry(_) => Advice::DryFirst,
+            Self::NothingDry(_) | Self::AllWet(_) => Advice::DryFirst,
+            Self::NoVarnish(_) => Advice::say("varnish it first, or take back what lies on it"),
             Self::NoRoom(_) => Advice::say("remove some wet paint first, or dry it"),
             Self::Veiled { number, .. } => Advice::FullOpacity { layer: *number },
             Self::Drying => Advice::StopDrying,

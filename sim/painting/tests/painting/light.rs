@@ -14,9 +14,9 @@ use maulstick_optics::gamut::GamutMapping;
 use maulstick_optics::icc::Profile;
 use maulstick_optics::light::{Facet, Lamp, LampSetup, Spot, lit};
 use maulstick_optics::{PaintLibrary, Under};
-use maulstick_painting::edits::{Dry, LayerRef, Opacity};
+use maulstick_painting::edits::{Dry, Finish, LayerRef, Opacity, Undo, Varnish};
 use maulstick_painting::picture::{banded, picture_for, unlit_picture};
-use maulstick_painting::{Painting, PaintingSetup};
+use maulstick_painting::{LayerError, Painting, PaintingSetup};
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
 use maulstick_types::values::{LayerName, OpacityFactor, Share};
 
@@ -97,10 +97,92 @@ fn drying_keeps_the_colour_and_the_height_whatever_the_share() {
     }
 }
 
+/// Gloss of the first painted tile of the canvas, a cell.
+fn gloss(painting: &mut Painting) -> Vec<f32> {
+    let banded = banded(painting, CANVAS).expect("a canvas");
+    let (id, tile) = banded.tiles(0).next().expect("a tile");
+    banded.shown(id, tile, &mut Bakery::default()).gloss
+}
+
+fn varnish(finish: Finish, region: Option<&str>) -> Varnish {
+    let region = region.map(|region| region.parse().expect("a region"));
+    Varnish { finish, region }
+}
+
+#[test]
+fn varnish_shines_alike_on_all_that_is_dry_and_comes_off_whole() {
+    let mut painting = painting(Light::default());
+    two_strokes(&mut painting);
+    let nothing = painting.apply(varnish(Finish::Off, None));
+    assert_eq!(nothing, Err(LayerError::NoVarnish(None).into()));
+    painting.apply(Dry::whole(CANVAS)).expect("wet");
+    stroke(&mut painting, 3, "Bone Black", 3.0);
+    let before = (unlit_picture(&mut painting, CANVAS), gloss(&mut painting));
+    let layers = painting.scene().layers.len();
+    for (finish, shine) in [
+        (Finish::Gloss, 0.9..1.0),
+        (Finish::Satin, 0.45..0.6),
+        (Finish::Matt, 0.05..0.2),
+    ] {
+        painting.apply(varnish(finish, None)).expect("dry");
+        let after = (unlit_picture(&mut painting, CANVAS), gloss(&mut painting));
+        assert!(farthest(&before.0, &after.0) <= 1, "it is clear");
+        let cells = before.1.iter().zip(&after.1);
+        let (wet, dry): (Vec<_>, Vec<_>) = cells.partition(|(before, _)| **before > 0.7);
+        assert!(wet.len() > 100 && wet.iter().all(|(before, after)| before == after));
+        // Where paint has dried thick enough the coat does not sink in; on the bare ground it does.
+        let on_paint = dry.iter().filter(|(before, _)| **before > 0.2);
+        let shines: Vec<f32> = on_paint.map(|(_, after)| **after).collect();
+        println!("{finish:?}: {} cells, {:.3}", shines.len(), shines[0]);
+        let dull = |own: &&f32| !(0.75 * shine.start..shine.end).contains(*own);
+        assert!(shines.len() > 100 && shines.iter().filter(dull).count() == 0);
+        assert_eq!(painting.report().quanta_missing, 0);
+        painting
+            .apply(varnish(Finish::Off, None))
+            .expect("varnished");
+        let off = (unlit_picture(&mut painting, CANVAS), gloss(&mut painting));
+        assert!(off == before && painting.scene().layers.len() == layers);
+        assert_eq!(painting.report().quanta_missing, 0);
+        painting.apply(Undo { brush: None }).expect("a step");
+        assert!(gloss(&mut painting) == after.1, "varnished again");
+        painting.apply(Undo { brush: None }).expect("a step");
+    }
+}
+
+#[test]
+fn varnish_comes_off_a_part_and_stays_under_later_paint() {
+    let mut painting = painting(Light::default());
+    painting
+        .apply(studio::fill("Raw Sienna", 60.0))
+        .expect("laid");
+    let wet = painting.apply(varnish(Finish::Gloss, None));
+    assert_eq!(wet, Err(LayerError::AllWet(None).into()));
+    painting.apply(Dry::whole(CANVAS)).expect("wet");
+    painting.apply(varnish(Finish::Gloss, None)).expect("dry");
+    painting
+        .apply(varnish(Finish::Off, Some("0,0,4x16")))
+        .expect("varnished");
+    let shine = gloss(&mut painting);
+    let edge = 16 * maulstick_types::paint::TILE..;
+    let row = &shine[edge][..maulstick_types::paint::TILE];
+    let shiny = row.iter().filter(|gloss| **gloss > 0.8).count();
+    assert!(
+        shiny > 8 && shiny < row.len() - 8 && row[0] < 0.5,
+        "{row:?}"
+    );
+    painting
+        .apply(studio::fill("Bone Black", 20.0))
+        .expect("laid");
+    painting.apply(Dry::whole(CANVAS)).expect("wet");
+    let off = painting.apply(varnish(Finish::Off, None));
+    assert_eq!(off, Err(LayerError::NoVarnish(None).into()));
+    assert_eq!(painting.report().quanta_missing, 0);
+}
+
 /// Paint that dries on the ground is matt in its first thin coat; wet paint is as glossy however thin.
 #[test]
 fn a_first_thin_coat_sinks_in() {
-    let gloss = |um: f64, dry: Option<Dry>| {
+    let first = |um: f64, dry: Option<Dry>| {
         let mut painting = painting(Light::default());
         painting
             .apply(studio::fill("Raw Sienna", um))
@@ -108,12 +190,10 @@ fn a_first_thin_coat_sinks_in() {
         if let Some(dry) = dry {
             painting.apply(dry).expect("wet");
         }
-        let banded = banded(&mut painting, CANVAS).expect("a canvas");
-        let (id, tile) = banded.tiles(0).next().expect("a tile");
-        banded.shown(id, tile, &mut Bakery::default()).gloss[0]
+        gloss(&mut painting)[0]
     };
-    let [thin, thick] = [8.0, 120.0].map(|um| gloss(um, Some(Dry::whole(CANVAS))));
-    let [wet, wetter] = [8.0, 120.0].map(|um| gloss(um, None));
+    let [thin, thick] = [8.0, 120.0].map(|um| first(um, Some(Dry::whole(CANVAS))));
+    let [wet, wetter] = [8.0, 120.0].map(|um| first(um, None));
     assert!(thin < 0.5 * thick && thick < wet, "{thin} {thick} {wet}");
     assert!((wet - wetter).abs() < 1e-6, "{wet} {wetter}");
 }

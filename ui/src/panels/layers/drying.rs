@@ -1,12 +1,13 @@
-//! Controls for drying: share, region, at once or over time.
+//! Controls for drying: share, region, at once or over time; and for varnish.
 
 use eframe::egui::{DragValue, ProgressBar, TextEdit, Ui};
 use maulstick_painting::clock::TICKS_A_SECOND;
-use maulstick_painting::edits::{Dry, StopDrying, Wet};
+use maulstick_painting::edits::{Dry, Finish, StopDrying, Varnish, Wet};
 use maulstick_types::Region;
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{LayerName, Quantity, Share, Ticks, ValueError};
+use maulstick_ui_kit::language::translated;
 use maulstick_ui_kit::rows::{Number, Sliders, choice, row};
 
 use super::region;
@@ -15,6 +16,19 @@ use crate::widgets::context::{PanelContext, ask};
 const PLACES: [&str; 2] = [tr_noop!("Whole canvas"), tr_noop!("A part")];
 
 const SHARE: Number<'_> = Number::percent::<Share>(tr_noop!("How much"));
+
+const SHINE: &str = tr_noop!("A clear coat on the canvas and on what has dried");
+/// Buttons of the varnish: what each asks for, its word and what it does.
+const VARNISHES: [(Finish, &str, &str); 4] = [
+    (Finish::Gloss, tr_noop!("Gloss"), SHINE),
+    (Finish::Satin, tr_noop!("Satin"), SHINE),
+    (Finish::Matt, tr_noop!("Matt"), SHINE),
+    (
+        Finish::Off,
+        tr_noop!("Off"),
+        tr_noop!("Takes off the varnish that lies on top"),
+    ),
+];
 
 /// A drying in progress.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,6 +121,22 @@ impl DryingForm {
             }
         });
         self.in_time(ui, work);
+        self.varnish(ui, work);
+    }
+
+    /// Varnish on what the form says is dry, or off it.
+    fn varnish(&self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        ui.horizontal(|ui| {
+            ui.label(tr!("Varnish"));
+            for (finish, name, does) in VARNISHES {
+                let button = ui.button(translated(name)).on_hover_text(translated(does));
+                if button.clicked() {
+                    let region = self.part.clone();
+                    let asked = checked(&region).map(|()| Varnish { finish, region });
+                    ask(work, asked);
+                }
+            }
+        });
     }
 
     /// The drying of what the form says.

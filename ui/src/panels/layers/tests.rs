@@ -2,7 +2,9 @@ use eframe::egui::accesskit::{Role, Toggled};
 use eframe::egui::{Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use maulstick_painting::edits::{Dry, LayerRef, NameLayer, Opacity, StopDrying, Wet};
+use maulstick_painting::edits::{
+    Dry, Finish, LayerRef, NameLayer, Opacity, StopDrying, Varnish, Wet,
+};
 use maulstick_types::Region;
 use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
@@ -168,6 +170,8 @@ fn paint_dries_at_once_in_time_or_becomes_wet_again() {
     harness.run_steps(4);
     harness.get_by_label("Wet again").click();
     harness.run_steps(4);
+    harness.get_by_label("Satin").click();
+    harness.run_steps(4);
     let surface = CANVAS;
     let expected = [
         Command::from(Dry {
@@ -184,6 +188,10 @@ fn paint_dries_at_once_in_time_or_becomes_wet_again() {
             layers: Some(1),
             region: None,
             surface,
+        }),
+        Command::from(Varnish {
+            finish: Finish::Satin,
+            region: None,
         }),
     ];
     assert_eq!(harness.state_mut().asked(), expected);

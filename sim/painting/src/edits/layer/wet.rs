@@ -153,7 +153,7 @@ impl PaintingEdit for Wet {
 }
 
 /// Removes those of `numbers` from the scene that are empty on every surface.
-fn drop_empty_layers(desk: &mut Desk, numbers: BTreeSet<u32>) {
+pub(super) fn drop_empty_layers(desk: &mut Desk, numbers: BTreeSet<u32>) {
     let mut gone = numbers;
     for (_, version) in desk.surfaces.iter().flat_map(|own| own.store.iter()) {
         let stack = version.tile.as_ref().and_then(|tile| tile.dry());

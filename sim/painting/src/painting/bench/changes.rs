@@ -46,15 +46,19 @@ impl Workbench {
         self.book(None);
     }
 
+    /// Puts tiles in place that together have less paint than before, wet or dry; the cleaner takes the rest.
+    pub(crate) fn put_taken_off(&mut self, on: usize, tiles: Changed) {
+        let [before, after] = self.counts(on, &tiles, wet_and_dry);
+        let off = std::array::from_fn(|slot| before[slot].saturating_sub(after[slot]));
+        self.put_changed(on, tiles);
+        self.accounts.ledger.to_cleaner(&off);
+        self.book(None);
+    }
+
     /// Puts tiles in place whose cells have as much paint as before: what changed from one paint to another is booked as
     /// given and taken by a mode.
     pub(crate) fn put_converted(&mut self, on: usize, tiles: Changed) {
-        let [before, after] = self.counts(on, &tiles, |sum, tile| {
-            add(sum, &tile.counts());
-            if let Some(stack) = tile.dry() {
-                add(sum, &stack.counts());
-            }
-        });
+        let [before, after] = self.counts(on, &tiles, wet_and_dry);
         self.put_changed(on, tiles);
         let exchanged: [i64; SLOTS] =
             std::array::from_fn(|slot| after[slot] as i64 - before[slot] as i64);
@@ -132,5 +136,13 @@ impl Workbench {
         change(&mut materials[on]);
         self.desk.set_materials(&materials);
         self.end_own_step();
+    }
+}
+
+/// Adds all paint of a tile.
+fn wet_and_dry(sum: &mut Counts, tile: &Tile) {
+    add(sum, &tile.counts());
+    if let Some(stack) = tile.dry() {
+        add(sum, &stack.counts());
     }
 }

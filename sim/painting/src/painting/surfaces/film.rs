@@ -86,7 +86,7 @@ impl SurfaceState {
     }
 
     /// Most quanta that each cell of a tile takes, and true if all cells take paint, none of them a well's.
-    fn room(&self, id: TileId) -> (Vec<f32>, bool) {
+    pub(super) fn room(&self, id: TileId) -> (Vec<f32>, bool) {
         let mut room = vec![CELL_MAX as f32; TILE_CELLS];
         let [width, height] = self.store.cells().map(|cells| cells as usize);
         let side = maulstick_types::paint::TILE;

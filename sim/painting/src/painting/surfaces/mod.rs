@@ -3,6 +3,7 @@
 mod counts_at;
 pub(crate) mod film;
 mod part;
+mod varnish;
 mod well_moves;
 
 pub(crate) use part::Changed;

@@ -84,7 +84,7 @@ impl SurfaceState {
     }
 
     /// For each cell of a tile, true if it is in a part and in no well; `None` if the whole tile is outside.
-    fn within(&self, part: &Part, id: TileId) -> Option<Vec<bool>> {
+    pub(super) fn within(&self, part: &Part, id: TileId) -> Option<Vec<bool>> {
         let mut within = vec![true; TILE_CELLS];
         for cell in self.staying(part, id)? {
             within[cell] = false;
