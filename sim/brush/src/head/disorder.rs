@@ -17,10 +17,14 @@ const RIM: f32 = 4.0;
 const RIM_POWER: i32 = 8;
 /// Thickness of the head by the distance at which its bristles differ in length: worn bristles stand in ranks.
 const RANK: f32 = 3.0;
-/// Greatest offset of a bristle of hog and of soft hair at the rim beyond its tress's, by half the head's width, and the
-/// way along which it comes and goes, m.
-const RIM_STRAY: [f32; 2] = [0.015, 0.0014];
-const RIM_REGROUPS_M: f64 = 5e-3;
+/// Greatest offset of the bristles of hog and of soft hair at a rim, which come and go together, m, and the most of it by
+/// half the head's width.
+const RIM_STRAY_M: [f32; 2] = [0.65e-3, 0.06e-3];
+const RIM_STRAY_MOST: f32 = 0.15;
+/// Way along which they do, m.
+const RIM_REGROUPS_M: f64 = 3e-3;
+/// Width of a tress by that of one at the rim.
+const RIM_TRESS: f32 = 0.15;
 /// Way along which tresses regroup, m.
 const REGROUPS_M: f64 = 25e-3;
 /// Numbers of the planes of noise: across the width, across the thickness, along, at the rim.
@@ -52,7 +56,7 @@ impl Straying {
             rigid: file.head.hair == Hair::Steel,
             single_share: (1.0 / file.strips.stands_for) as f32,
             stray: STRAY[soft],
-            rim_stray: RIM_STRAY[soft],
+            rim_stray: (RIM_STRAY_M[soft] / file.radius_m(0.0) as f32).min(RIM_STRAY_MOST),
             ragged: (RAGGED[soft] * blunt) as f32 * (STATIONS - 1) as f32,
             drawn_back: Vec::new(),
         }
@@ -95,7 +99,7 @@ impl Head {
                 .push(0.5 * own.ragged * (along + single));
             let aside = 2.0 * own.stray * noisy(&tresses, 1, place);
             let across = 2.0 * own.stray * noisy(&tresses, 0, place);
-            let at_rim = 2.0 * own.rim_stray * rim * noisy(&rims, 3, ranked);
+            let at_rim = 2.0 * own.rim_stray * rim * noisy(&rims, 3, place.map(|place| place * RIM_TRESS));
             for station in 0..STATIONS {
                 let bent = smoothstep(place_along(station)) as f32;
                 let i = station * self.strips + strip;
