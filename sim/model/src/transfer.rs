@@ -25,6 +25,8 @@ pub struct Exchanging {
     pub swap: f32,
     /// Share of the shear that a light touch lacks, 0 to 1.
     pub glides: f32,
+    /// Share of the wet paint within reach that it shears, and so evens out with: less under a light touch, 0 to 1.
+    pub shears: f32,
     /// Part of its film that does not hang below it while it hardly presses, 0 to 1.
     pub holds: f32,
 }
@@ -38,8 +40,9 @@ impl Exchanging {
         ln_kept: LN_KEPT,
         evens: 1.0,
         most: MAX_TRANSFER,
-        swap: 2.55,
+        swap: 0.55,
         glides: 1.0,
+        shears: 1.0,
         holds: 0.6,
     };
     /// Soft hair that comes to a point: its paint hangs in a drop.
@@ -50,8 +53,9 @@ impl Exchanging {
     /// Soft hair that flares: it hardly takes paint up, and blends the paint that it moves through.
     pub(crate) const BLENDER: Self = Self {
         swap: 0.05,
-        most: 0.0004,
+        most: 0.0003,
         glides: 0.0,
+        shears: 1.0,
         holds: 0.0,
         ..Self::BRISTLES
     };
@@ -62,6 +66,7 @@ impl Exchanging {
         most: 1.0,
         swap: 0.01,
         glides: 0.0,
+        shears: 1.0,
         holds: 0.0,
     };
 
@@ -76,8 +81,13 @@ impl Exchanging {
     /// The exchange under a press of 0 to 1.
     #[must_use]
     pub fn pressed(self, press: f32) -> Self {
-        let swap = self.swap * self.shear(press);
-        Self { swap, ..self }
+        let shears = self.shear(press);
+        let swap = self.swap * shears;
+        Self {
+            swap,
+            shears,
+            ..self
+        }
     }
 
     /// The exchange's numbers for a graphics device: ln of the share kept, whether the two sides even out, the most, the

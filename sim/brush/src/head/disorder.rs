@@ -23,12 +23,20 @@ const RIM_STRAY_M: [f32; 2] = [0.65e-3, 0.06e-3];
 const RIM_STRAY_MOST: f32 = 0.15;
 /// Way along which they do, m.
 const RIM_REGROUPS_M: f64 = 3e-3;
+/// Greatest way by which the points of a tress of a worn head of hog and of soft hair lie before or behind the others on
+/// the surface, m, and the most of it by half the head's width.
+const WORN_M: [f32; 2] = [1.1e-3, 0.08e-3];
+const WORN_MOST: f64 = 0.3;
+/// Width of a tress by that of one that is worn alike.
+const WORN_TRESS: f32 = 0.42;
 /// Width of a tress by that of one at the rim.
 const RIM_TRESS: f32 = 0.15;
 /// Way along which tresses regroup, m.
-const REGROUPS_M: f64 = 25e-3;
-/// Numbers of the planes of noise: across the width, across the thickness, along, at the rim.
-const PLANES: [u64; 4] = [11, 12, 13, 14];
+const REGROUPS_M: f64 = 18e-3;
+/// Number by which half of the strips have the capacity of another one in a stroke.
+const OTHERS: i64 = 1 << 40;
+/// Numbers of the planes of noise: across the width, across the thickness, along, at the rim, of the worn points.
+const PLANES: [u64; 5] = [11, 12, 13, 14, 15];
 
 /// How far the strips of a head stray.
 #[derive(Clone, Debug)]
@@ -45,6 +53,10 @@ pub(super) struct Straying {
     ragged: f32,
     /// Stations by which the point of each strip is drawn back along it; empty where none is.
     pub(super) drawn_back: Vec<f32>,
+    /// Greatest way by which a tress's points lie before or behind the head's, m.
+    worn_m: f32,
+    /// Way by which the point of each strip lies before the others on the surface, m; empty where none does.
+    pub(super) ahead: Vec<f32>,
 }
 
 impl Straying {
@@ -59,6 +71,8 @@ impl Straying {
             rim_stray: (RIM_STRAY_M[soft] / file.radius_m(0.0) as f32).min(RIM_STRAY_MOST),
             ragged: (RAGGED[soft] * blunt) as f32 * (STATIONS - 1) as f32,
             drawn_back: Vec::new(),
+            worn_m: (WORN_M[soft] as f64 * blunt).min(WORN_MOST * file.radius_m(0.0)) as f32,
+            ahead: Vec::new(),
         }
     }
 }
@@ -84,7 +98,13 @@ impl Head {
             Regrouping::at(way_m / RIM_REGROUPS_M),
         );
         head.straying.drawn_back.clear();
+        head.straying.ahead.clear();
         for (strip, root) in self.roots.iter().enumerate() {
+            let other = unit(seed, [strip as i64, OTHERS]);
+            if other < 0.5 {
+                let other = (2.0 * other * self.strips as f32) as usize;
+                head.capacity[strip] = self.capacity[other.min(self.strips - 1)];
+            }
             let place = [root[0] / TRESS, root[1] / TRESS];
             let ranked = [place[0], root[1] * RANK];
             let noisy = |turn: &Regrouping, plane: usize, place| {
@@ -97,9 +117,12 @@ impl Head {
             head.straying
                 .drawn_back
                 .push(0.5 * own.ragged * (along + single));
+            let worn = noisy(&tresses, 4, [place[0] * WORN_TRESS, 0.0]) / tresses.spread();
+            head.straying.ahead.push(2.0 * own.worn_m * worn);
             let aside = 2.0 * own.stray * noisy(&tresses, 1, place);
             let across = 2.0 * own.stray * noisy(&tresses, 0, place);
-            let at_rim = 2.0 * own.rim_stray * rim * noisy(&rims, 3, place.map(|place| place * RIM_TRESS));
+            let at_rim =
+                2.0 * own.rim_stray * rim * noisy(&rims, 3, place.map(|place| place * RIM_TRESS));
             for station in 0..STATIONS {
                 let bent = smoothstep(place_along(station)) as f32;
                 let i = station * self.strips + strip;
@@ -127,6 +150,12 @@ impl Regrouping {
             turn: turn as u64,
             part,
         }
+    }
+
+    /// Standard deviation of a value between two turns by that of one at a turn.
+    fn spread(&self) -> f32 {
+        let rest = 1.0 - self.part;
+        (self.part * self.part + rest * rest).sqrt()
     }
 
     /// A value that goes from that of this turn's seed to that of the next one's.

@@ -13,7 +13,7 @@ mod lay;
 pub mod place;
 pub mod weights;
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3};
 use maulstick_num::atan2;
 use maulstick_num::geometry::{Rigid, shortest_arc};
 
@@ -347,9 +347,29 @@ impl Head {
             draw_back(plane, &self.straying.drawn_back);
         }
         into.z.iter_mut().for_each(floor);
+        self.wear(&brush.rotation, hold.per_m, into);
         into.skin.clear();
         if let Some(skin) = &self.skin {
             skin.pose(&self.spine_roots, &shapes, hold.per_m, &mut into.skin);
+        }
+    }
+}
+
+impl Head {
+    /// Moves the points of worn tresses before and behind the others, along the surface.
+    fn wear(&self, brush: &DQuat, per_m: f64, into: &mut HeadPose) {
+        let ahead = &self.straying.ahead;
+        let thick = (*brush * DVec3::Y).truncate().normalize_or_zero() * per_m;
+        if ahead.is_empty() {
+            return;
+        }
+        for station in 1..STATIONS {
+            let way = (thick * smoothstep(place_along(station))).to_array();
+            for (plane, way) in [&mut into.x, &mut into.y].into_iter().zip(way) {
+                let own = plane[station * ahead.len()..].iter_mut();
+                own.zip(ahead)
+                    .for_each(|(place, ahead)| *place += ahead * way as f32);
+            }
         }
     }
 }

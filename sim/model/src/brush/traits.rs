@@ -87,7 +87,7 @@ impl BrushTraits {
     /// Thickness of the film that clings to a strip, µm.
     const CLINGS_UM: f64 = 250.0;
     /// Difference between the films of two strips that stays, by a full film: so a bristle keeps its streak.
-    pub const HOLDS: f64 = 0.3;
+    pub const HOLDS: f64 = 0.4;
 
     /// The traits of a brush on a surface with cells of `cell_m` at `zoom`.
     #[must_use]

@@ -225,7 +225,7 @@ fn wanted([a_b, a_c, lies, gap]: [f64; 4], travel: f64, (kept, blade): (f64, boo
     let donor = if difference > 0.0 { a_b - fill } else { a_c };
     let net = (goes(1.0) * difference.abs()).min(most * travel).min(donor);
     // Films that touch across a gap shear a skin of 90 µm, half as much where the gap is 15 µm.
-    let swap = if blade { 0.01 } else { 2.55 };
+    let swap = if blade { 0.01 } else { 0.55 };
     let sheared = shear(blade) * swap * travel * 15e-6 / (15e-6 + 0.025 * gap);
     let swap = sheared.min(1.0) * (a_b - gap).clamp(0.0, 90e-6 / 0.025).min(lies);
     if difference > 0.0 {
@@ -251,7 +251,7 @@ fn exchanged(
         let travel = (u * u + v * v).sqrt() * f64::from(traits.cell_per_reference);
         let a_b = film * f64::from(traits.film_units_per_quantum);
         let lies = lying / QUANTA_PER_UNIT;
-        let a_c = lies * f64::from(c.fraction);
+        let a_c = lies * f64::from(c.fraction) * shear(rule.1);
         // A unit is 25 mm.
         let gap = f64::from(c.gap) * CELL_M / 0.025;
         let [out, back, swap] = wanted([a_b, a_c, lies, gap], travel, rule)

@@ -55,7 +55,7 @@ fn exchange_ask(@builtin(global_invocation_id) id: vec3<u32>) {
     let travel = length(contact.moved) * step.cell_per_reference;
     let on_brush = f32(load[1u + contact.texel]) * step.film_units_per_quantum;
     let lies = lying / QUANTA_PER_UNIT;
-    let on_canvas = lies * contact.fraction;
+    let on_canvas = lies * contact.fraction * step.shear;
     let gap = max(-contact.reach, 0.0) / (step.cells_per_quantum * QUANTA_PER_UNIT);
     var net = step.flow * travel;
     var swap = 0.0;

@@ -69,7 +69,7 @@ struct Meeting {
 fn wanted(meeting: &Meeting, rule: &Exchanging, handling: &Handling) -> [f32; 2] {
     let quanta = meeting.cover * QUANTA_PER_UNIT as f32;
     let lying = meeting.lying * (1.0 / QUANTA_PER_UNIT as f32);
-    let on_canvas = lying * meeting.fraction;
+    let on_canvas = lying * meeting.fraction * rule.shears;
     let (net, swap) = match handling.transfer {
         Transfer::Marker { flow } => (flow * meeting.travel, 0.0),
         _ => {
