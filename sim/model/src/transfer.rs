@@ -40,7 +40,7 @@ impl Exchanging {
         ln_kept: LN_KEPT,
         evens: 1.0,
         most: MAX_TRANSFER,
-        swap: 0.55,
+        swap: 1.0,
         glides: 1.0,
         shears: 1.0,
         holds: 0.6,
@@ -53,7 +53,7 @@ impl Exchanging {
     /// Soft hair that flares: it hardly takes paint up, and blends the paint that it moves through.
     pub(crate) const BLENDER: Self = Self {
         swap: 0.05,
-        most: 0.0003,
+        most: 0.00027,
         glides: 0.0,
         shears: 1.0,
         holds: 0.0,

@@ -25,18 +25,20 @@ const RIM_STRAY_MOST: f32 = 0.15;
 const RIM_REGROUPS_M: f64 = 3e-3;
 /// Greatest way by which the points of a tress of a worn head of hog and of soft hair lie before or behind the others on
 /// the surface, m, and the most of it by half the head's width.
-const WORN_M: [f32; 2] = [1.1e-3, 0.08e-3];
+const WORN_M: [f32; 2] = [0.6e-3, 0.06e-3];
 const WORN_MOST: f64 = 0.3;
 /// Width of a tress by that of one that is worn alike.
 const WORN_TRESS: f32 = 0.42;
 /// Width of a tress by that of one at the rim.
 const RIM_TRESS: f32 = 0.15;
 /// Way along which tresses regroup, m.
-const REGROUPS_M: f64 = 18e-3;
+const REGROUPS_M: f64 = 25e-3;
 /// Number by which half of the strips have the capacity of another one in a stroke.
 const OTHERS: i64 = 1 << 40;
 /// Numbers of the planes of noise: across the width, across the thickness, along, at the rim, of the worn points.
 const PLANES: [u64; 5] = [11, 12, 13, 14, 15];
+/// How far the lattice of each reaches.
+const LATTICE: [[usize; 2]; 5] = [[7, 7], [7, 7], [7, 3], [1, 1], [3, 0]];
 
 /// How far the strips of a head stray.
 #[derive(Clone, Debug)]
@@ -93,10 +95,12 @@ impl Head {
         if own.rigid || seed == 0 {
             return head;
         }
-        let (tresses, rims) = (
-            Regrouping::at(way_m / REGROUPS_M),
-            Regrouping::at(way_m / RIM_REGROUPS_M),
-        );
+        let tresses = Regrouping::at(way_m / REGROUPS_M);
+        let rims = Regrouping::at(way_m / RIM_REGROUPS_M);
+        let turns = [tresses, tresses, tresses, rims, tresses];
+        let planes: [Plane; 5] = std::array::from_fn(|plane| {
+            Plane::of(&turns[plane], seed ^ (PLANES[plane] << 32), LATTICE[plane])
+        });
         head.straying.drawn_back.clear();
         head.straying.ahead.clear();
         for (strip, root) in self.roots.iter().enumerate() {
@@ -106,27 +110,21 @@ impl Head {
                 head.capacity[strip] = self.capacity[other.min(self.strips - 1)];
             }
             let place = [root[0] / TRESS, root[1] / TRESS];
-            let ranked = [place[0], root[1] * RANK];
-            let noisy = |turn: &Regrouping, plane: usize, place| {
-                turn.between(seed, |seed| noise(seed ^ (PLANES[plane] << 32), place)) - 0.5
-            };
             let single = tresses.between(seed, |seed| unit(seed, [strip as i64, i64::MAX])) - 0.5;
             let rim = root[0].abs().max(root[1].abs()).powi(RIM_POWER);
             let single = own.single_share * single * (1.0 + RIM * rim) + 0.5 * RIM * rim;
-            let along = noisy(&tresses, 2, ranked);
-            head.straying
-                .drawn_back
-                .push(0.5 * own.ragged * (along + single));
-            let worn = noisy(&tresses, 4, [place[0] * WORN_TRESS, 0.0]) / tresses.spread();
+            let along = planes[2].at([place[0], root[1] * RANK]);
+            let drawn_back = 0.5 * own.ragged * (along + single);
+            head.straying.drawn_back.push(drawn_back);
+            let worn = planes[4].at([place[0] * WORN_TRESS, 0.0]) / tresses.spread();
             head.straying.ahead.push(2.0 * own.worn_m * worn);
-            let aside = 2.0 * own.stray * noisy(&tresses, 1, place);
-            let across = 2.0 * own.stray * noisy(&tresses, 0, place);
-            let at_rim =
-                2.0 * own.rim_stray * rim * noisy(&rims, 3, place.map(|place| place * RIM_TRESS));
+            let [across, aside] = [0, 1].map(|axis| 2.0 * own.stray * planes[axis].at(place));
+            let at_side = 2.0 * own.rim_stray * root[0].abs().powi(RIM_POWER);
+            let across = across + at_side * planes[3].at(place.map(|place| place * RIM_TRESS));
             for station in 0..STATIONS {
                 let bent = smoothstep(place_along(station)) as f32;
                 let i = station * self.strips + strip;
-                head.closed[0][i] += bent * (across + at_rim) * self.half_m[station][0];
+                head.closed[0][i] += bent * across * self.half_m[station][0];
                 head.closed[1][i] += bent * aside * self.half_m[station][1];
             }
         }
@@ -165,6 +163,45 @@ impl Regrouping {
     }
 }
 
+/// Noise on a lattice between two turns, its corners computed once for all strips.
+struct Plane {
+    reach: [usize; 2],
+    corners: Vec<f32>,
+}
+
+impl Plane {
+    /// The plane of a seed, from −`reach` to `reach` along each axis.
+    fn of(turn: &Regrouping, seed: u64, reach: [usize; 2]) -> Self {
+        let [wide, high] = reach.map(|reach| 2 * reach + 1);
+        let corners = (0..wide * high).map(|i| {
+            let place = [i % wide, i / wide];
+            let place = [0, 1].map(|axis| place[axis] as i64 - reach[axis] as i64);
+            turn.between(seed, |seed| unit(seed, place)) - 0.5
+        });
+        let corners = corners.collect();
+        Self { reach, corners }
+    }
+
+    /// The noise at a place, as [`noise`] less ½; beyond its reach that of its border.
+    fn at(&self, place: [f32; 2]) -> f32 {
+        let wide = 2 * self.reach[0] + 1;
+        let axis = |i: usize| {
+            let most = (2 * self.reach[i]) as f32;
+            let at = (place[i] + self.reach[i] as f32).clamp(0.0, most);
+            let low = at.floor().min((most - 1.0).max(0.0));
+            let t = at - low;
+            (low as usize, t * t * (3.0 - 2.0 * t))
+        };
+        let ((i, u), (j, v)) = (axis(0), axis(1));
+        let row = |j: usize| {
+            let [near, far] = [i, (i + 1).min(wide - 1)].map(|i| self.corners[j * wide + i]);
+            near + (far - near) * u
+        };
+        let next = (j + 1).min(2 * self.reach[1]);
+        row(j) + (row(next) - row(j)) * v
+    }
+}
+
 /// Smooth noise on a lattice of side 1, 0 to 1.
 #[must_use]
 pub fn noise(seed: u64, [x, y]: [f32; 2]) -> f32 {
@@ -187,4 +224,23 @@ pub fn unit(seed: u64, place: [i64; 2]) -> f32 {
         h ^= h >> 33;
     }
     (h >> 40) as f32 / 16_777_216.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plane_is_the_noise_of_its_turns() {
+        let turn = Regrouping::at(3.3);
+        let plane = Plane::of(&turn, 77, [7, 3]);
+        for i in 0..500 {
+            let [x, y] = [11, 12].map(|salt| unit(salt, [i, 0]) - 0.5);
+            let place = [13.9 * x, 5.9 * y];
+            let expected = turn.between(77, |seed| noise(seed, place)) - 0.5;
+            assert!((plane.at(place) - expected).abs() < 1e-5, "{place:?}");
+        }
+        let other = Plane::of(&Regrouping::at(4.3), 77, [7, 3]);
+        assert!((other.at([0.5, 0.5]) - plane.at([0.5, 0.5])).abs() > 1e-3);
+    }
 }

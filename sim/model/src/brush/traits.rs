@@ -87,7 +87,7 @@ impl BrushTraits {
     /// Thickness of the film that clings to a strip, µm.
     const CLINGS_UM: f64 = 250.0;
     /// Difference between the films of two strips that stays, by a full film: so a bristle keeps its streak.
-    pub const HOLDS: f64 = 0.4;
+    pub const HOLDS: f64 = 0.3;
 
     /// The traits of a brush on a surface with cells of `cell_m` at `zoom`.
     #[must_use]
@@ -176,7 +176,7 @@ pub(crate) const FILM_OVER: f64 = 2.0;
 pub(crate) const BLADE_OVER: f64 = 3.0;
 /// Share of the motion of bristles that paint follows: it sticks to them about as to the canvas (a half in Baxter 2004,
 /// § 6.4.2). Paint in front of a blade goes with it.
-pub(crate) const FOLLOWS: f32 = 0.45;
+pub(crate) const FOLLOWS: f32 = 0.41;
 /// [`FOLLOWS`] of a blade.
 pub(crate) const BLADE_FOLLOWS: f32 = 1.0;
 /// Press from which all of a film is squeezed under its bristles.

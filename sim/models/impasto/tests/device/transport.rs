@@ -225,7 +225,7 @@ fn wanted([a_b, a_c, lies, gap]: [f64; 4], travel: f64, (kept, blade): (f64, boo
     let donor = if difference > 0.0 { a_b - fill } else { a_c };
     let net = (goes(1.0) * difference.abs()).min(most * travel).min(donor);
     // Films that touch across a gap shear a skin of 90 µm, half as much where the gap is 15 µm.
-    let swap = if blade { 0.01 } else { 0.55 };
+    let swap = if blade { 0.01 } else { 1.0 };
     let sheared = shear(blade) * swap * travel * 15e-6 / (15e-6 + 0.025 * gap);
     let swap = sheared.min(1.0) * (a_b - gap).clamp(0.0, 90e-6 / 0.025).min(lies);
     if difference > 0.0 {

@@ -38,7 +38,7 @@ pub(crate) const RULES: [(&str, Rule); 3] = [
             kept: 0.9,
             blade: false,
             most_m: 1e-4,
-            swap: 0.55,
+            swap: 1.0,
             shear: LIGHT,
         },
     ),
@@ -57,7 +57,7 @@ pub(crate) const RULES: [(&str, Rule); 3] = [
         Rule {
             kept: 0.9,
             blade: false,
-            most_m: 0.75e-5,
+            most_m: 0.675e-5,
             swap: 0.05,
             shear: 1.0,
         },
@@ -66,7 +66,7 @@ pub(crate) const RULES: [(&str, Rule); 3] = [
 
 /// Baxter 2004, Algorithm 3, by path length (item 19 of the reading guide): units to the canvas. Near equality is
 /// measured by the donor's content, not by the text's 833 µm, so films of oil even out by their difference, at most 100
-/// µm along a reference cell (7.5 µm of a blender). The part of a film beyond the gap under it fills the gap 16 times as
+/// µm along a reference cell (6.75 µm of a blender). The part of a film beyond the gap under it fills the gap 16 times as
 /// fast, until 3/10 of all is on the brush. A blade takes up all that it reaches, and evens nothing out.
 fn algorithm_3([a_b, a_c, lies, gap]: [f64; 4], travel: f64, rule: Rule) -> f64 {
     let stays = |times: f64| maulstick_num::powf(rule.kept, times * travel);

@@ -117,7 +117,7 @@ fn agrees(faces: &Faces, oracle: &[Vec<f64>; 2]) -> bool {
 fn followed(kind: &str) -> f64 {
     match kind {
         "knife" => 1.0,
-        _ => 0.45,
+        _ => 0.41,
     }
 }
 

@@ -22,8 +22,9 @@ use super::backend::deferral::Deferral;
 use crate::brush_colour::Carried;
 use crate::error::BrushError;
 
-/// Distance along a stroke between regroupings of its bristles, cells: none of a head of 14 mm moves by a cell in it.
-const REGROUP_CELLS: f64 = 5.0;
+/// Distance along a stroke between regroupings of its bristles, m: the rim strays by a fifth of a millimetre in it, all
+/// others by less.
+const REGROUP_M: f64 = 0.5e-3;
 /// Bits of a seed.
 const SEEDS: u64 = 0x7fff_ffff;
 
@@ -129,11 +130,10 @@ impl PaintingBrush {
         Arc::make_mut(&mut self.load).disorder(self.seed);
     }
 
-    /// Regroups its bristles if it has moved far enough since they last did, on cells of `cell_m` in its own metres;
-    /// true if they did.
-    pub(crate) fn regroup(&mut self, cell_m: f64) -> bool {
+    /// Regroups its bristles if it has moved far enough since they last did; true if they did.
+    pub(crate) fn regroup(&mut self) -> bool {
         let [way, last] = &mut self.way_m;
-        if *way - *last < REGROUP_CELLS * cell_m {
+        if *way - *last < REGROUP_M {
             return false;
         }
         *last = *way;

@@ -93,7 +93,7 @@ impl Stroke<'_> {
             PathStepper::begin(&head, waypoint, scale)
         };
         let own = self.brush_mut();
-        let path = if own.regroup(scale.cell_m * scale.zoom) {
+        let path = if own.regroup() {
             path.regrouped(&own.head)
         } else {
             path
