@@ -12,7 +12,6 @@
 //! | [`transfer`] | transfer from brush to canvas and back |
 //! | [`raster`] | the brush over the cells that it touches |
 //! | [`reservoir`] | the surface of a brush filled again |
-//! | [`relative_height`] | heights as differences of a byte |
 //! | [`stroke`] | stroking algorithms: faster, better, along a spline |
 //! | [`layers`], `wet_over`, [`emboss`] | colour and relief |
 //! | `sheet` | panels of the sheet of effects |
@@ -55,6 +54,8 @@
 //! - On a device (feature `device`) the processor sends a record for each blend of a step; the device draws the head
 //!   once a drawing, and a dispatch blends it at each place. Thresholds are the processor's in fixed point and
 //!   quotients are rounded alike, so on the same drawing both give the same counts. Reservoirs are filled in f32.
+//! - Heights are those of the counts. The text keeps them as differences of a byte (§ 4.8), which would save nothing beside
+//!   the counts.
 //! - Colours depend on the wet paint over a layer when it dried, which the dry page notes (`wet_over`); so eq. 4.1 and
 //!   its inverse (§ 4.7) hold for any number of layers. The optics neither shade nor bake this paint
 //!   (`Colouring::Volumes`).
@@ -67,7 +68,6 @@ mod entry;
 mod films;
 pub mod layers;
 pub mod raster;
-pub mod relative_height;
 pub mod reservoir;
 mod sheet;
 mod step;
