@@ -52,6 +52,12 @@ impl Appearance {
         self.glosses.insert(slot, paint.dry_gloss());
     }
 
+    /// True for the thinner and varnishes, which hide nothing in any colouring.
+    #[must_use]
+    pub fn is_clear(&self, slot: usize) -> bool {
+        self.thinner == Some(slot) || self.varnishes.contains(&slot)
+    }
+
     /// Gloss of the paint in a slot once it is dry.
     #[must_use]
     pub fn gloss(&self, slot: usize) -> f32 {

@@ -1,7 +1,7 @@
 //! Conversion between paint models that show the same counts in different colours.
 //!
 //! Every model counts its paint by slot, so a conversion moves no volume: each cell keeps the quanta of each of its
-//! layers, and its thinner. Only the colours differ. Kubelka-Munk films mix yellow and blue to green, volumes to grey
+//! layers, and its thinner and varnish. Only the colours differ. Kubelka-Munk films mix yellow and blue to green, volumes to grey
 //! ([`Colouring`](maulstick_appearance::colouring::Colouring)); a thick dark glaze is nearly black as a film and has
 //! its tint as a volume. So the paints of each layer are fitted, from the bottom up: those of the same volume that are
 //! nearest in ΔE₀₀ to the old appearance of the layer over all below it.

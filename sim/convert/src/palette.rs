@@ -7,7 +7,7 @@ use maulstick_optics::colour::{Matrix, apply, inverse, lab};
 #[derive(Debug)]
 pub(crate) struct Palette<'a> {
     pub(crate) look: &'a Appearance,
-    /// Their slots, ascending, without the thinner.
+    /// Their slots, ascending, without thinner and varnish.
     pub(crate) slots: Vec<usize>,
     /// K and S per metre, a row of paints for each wavelength.
     pub(crate) ks: Vec<Vec<[f64; 2]>>,
@@ -25,7 +25,7 @@ impl<'a> Palette<'a> {
     pub(crate) fn new(look: &'a Appearance) -> Self {
         let studio = &look.studio;
         let slots: Vec<usize> = (0..studio.slots())
-            .filter(|slot| look.thinner != Some(*slot))
+            .filter(|slot| !look.is_clear(*slot))
             .collect();
         let row = |sample: usize| {
             let paint = |slot: &usize| studio.paint(*slot)[sample].map(f64::from);

@@ -98,7 +98,7 @@ impl Head {
         let tresses = Regrouping::at(way_m / REGROUPS_M);
         let rims = Regrouping::at(way_m / RIM_REGROUPS_M);
         let turns = [tresses, tresses, tresses, rims, tresses];
-        let planes: [Plane; 5] = std::array::from_fn(|plane| {
+        let [wide, deep, long, sides, points] = std::array::from_fn(|plane| {
             Plane::of(&turns[plane], seed ^ (PLANES[plane] << 32), LATTICE[plane])
         });
         head.straying.drawn_back.clear();
@@ -113,14 +113,14 @@ impl Head {
             let single = tresses.between(seed, |seed| unit(seed, [strip as i64, i64::MAX])) - 0.5;
             let rim = root[0].abs().max(root[1].abs()).powi(RIM_POWER);
             let single = own.single_share * single * (1.0 + RIM * rim) + 0.5 * RIM * rim;
-            let along = planes[2].at([place[0], root[1] * RANK]);
+            let along = long.at([place[0], root[1] * RANK]);
             let drawn_back = 0.5 * own.ragged * (along + single);
             head.straying.drawn_back.push(drawn_back);
-            let worn = planes[4].at([place[0] * WORN_TRESS, 0.0]) / tresses.spread();
+            let worn = points.at([place[0] * WORN_TRESS, 0.0]) / tresses.spread();
             head.straying.ahead.push(2.0 * own.worn_m * worn);
-            let [across, aside] = [0, 1].map(|axis| 2.0 * own.stray * planes[axis].at(place));
+            let [across, aside] = [&wide, &deep].map(|plane| 2.0 * own.stray * plane.at(place));
             let at_side = 2.0 * own.rim_stray * root[0].abs().powi(RIM_POWER);
-            let across = across + at_side * planes[3].at(place.map(|place| place * RIM_TRESS));
+            let across = across + at_side * sides.at(place.map(|place| place * RIM_TRESS));
             for station in 0..STATIONS {
                 let bent = smoothstep(place_along(station)) as f32;
                 let i = station * self.strips + strip;

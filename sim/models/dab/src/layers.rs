@@ -89,13 +89,13 @@ impl Curve {
 static CURVES: std::sync::LazyLock<[Curve; 2]> =
     std::sync::LazyLock::new(|| [Curve::of(srgb_encode), Curve::of(srgb_decode)]);
 
-/// Encoded colours of the paints by slot; `None` for the thinner, which hides nothing.
+/// Encoded colours of the paints by slot; `None` for thinner and varnish, which hide nothing.
 fn colours(look: &Appearance) -> Vec<Option<[f32; 3]>> {
     let studio = &look.studio;
     let white = vec![WHITE; studio.wavelengths()];
     let colour = |slot: usize| {
         let film = studio.colour(&[(slot, SHOWN_M)], &white);
-        (look.thinner != Some(slot)).then(|| film.map(|channel| srgb_encode(channel) as f32))
+        (!look.is_clear(slot)).then(|| film.map(|channel| srgb_encode(channel) as f32))
     };
     (0..studio.slots()).map(colour).collect()
 }

@@ -234,7 +234,11 @@ pub(crate) fn paint_slot(studio: &mut Studio, paint: &Paint, file_hash: u32) -> 
         name: paint.name.clone(),
         masstone: seen(
             &[(slot, OPAQUE_M)],
-            if paint.is_thinner() { 1.0 } else { 0.0 },
+            if paint.is_thinner() || paint.is_varnish() {
+                1.0
+            } else {
+                0.0
+            },
         ),
         // A tint is one part in ten of the strongest white's scattering.
         tint: seen(&[(slot, 1e-5)], 0.9),

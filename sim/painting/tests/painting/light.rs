@@ -14,11 +14,12 @@ use maulstick_optics::gamut::GamutMapping;
 use maulstick_optics::icc::Profile;
 use maulstick_optics::light::{Facet, Lamp, LampSetup, Spot, lit};
 use maulstick_optics::{PaintLibrary, Under};
-use maulstick_painting::edits::{Dry, Finish, LayerRef, Opacity, Undo, Varnish};
+use maulstick_painting::edits::common::convert;
+use maulstick_painting::edits::{Applied, Dry, Finish, LayerRef, Opacity, Undo, Varnish};
 use maulstick_painting::picture::{banded, picture_for, unlit_picture};
 use maulstick_painting::{LayerError, Painting, PaintingSetup};
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
-use maulstick_types::values::{LayerName, OpacityFactor, Share};
+use maulstick_types::values::{LayerName, ModelName, OpacityFactor, Share};
 
 use crate::studio::{self, BRUSH};
 
@@ -177,6 +178,68 @@ fn varnish_comes_off_a_part_and_stays_under_later_paint() {
     let off = painting.apply(varnish(Finish::Off, None));
     assert_eq!(off, Err(LayerError::NoVarnish(None).into()));
     assert_eq!(painting.report().quanta_missing, 0);
+}
+
+#[test]
+fn varnish_comes_off_beside_later_paint_of_the_same_tile() {
+    let mut painting = painting(Light::default());
+    painting
+        .apply(studio::fill("Raw Sienna", 60.0))
+        .expect("laid");
+    painting.apply(Dry::whole(CANVAS)).expect("wet");
+    let bare = gloss(&mut painting);
+    painting.apply(varnish(Finish::Gloss, None)).expect("dry");
+    stroke(&mut painting, 1, "Bone Black", 6.0);
+    painting.apply(Dry::whole(CANVAS)).expect("wet");
+    let shiny = gloss(&mut painting);
+    let layers = painting.scene().layers.len();
+    painting.apply(varnish(Finish::Off, None)).expect("beside");
+    let off = gloss(&mut painting);
+    let cells = bare.iter().zip(&shiny).zip(&off);
+    let (beside, under): (Vec<_>, Vec<_>) = cells.partition(|((_, shiny), _)| **shiny > 0.9);
+    assert!(beside.len() > 100 && beside.iter().all(|((bare, _), off)| bare == off));
+    assert!(
+        under.len() > 100
+            && under
+                .iter()
+                .all(|((_, shiny), off)| (*shiny - *off).abs() < 1e-6)
+    );
+    assert_eq!(
+        painting.scene().layers.len(),
+        layers,
+        "some is left under the paint"
+    );
+    assert_eq!(painting.report().quanta_missing, 0);
+    let again = painting.apply(varnish(Finish::Off, None));
+    assert_eq!(again, Err(LayerError::NoVarnish(None).into()));
+    painting.apply(Undo { brush: None }).expect("a step");
+    assert!(gloss(&mut painting) == shiny);
+}
+
+#[test]
+fn varnish_stays_clear_in_the_colours_of_dab() {
+    let converted = |coat: &str| {
+        let mut painting = painting(Light::default());
+        two_strokes(&mut painting);
+        painting.apply(Dry::whole(CANVAS)).expect("wet");
+        match coat {
+            "varnish" => painting.apply(varnish(Finish::Satin, None)),
+            "none" => Ok(Applied::Done),
+            paint => painting.apply(studio::fill(paint, 15.0)),
+        }
+        .expect("laid");
+        let model = ModelName::new("dab").expect("a name");
+        painting.apply(convert(CANVAS, model)).expect("another");
+        unlit_picture(&mut painting, CANVAS)
+    };
+    let plain = converted("none");
+    let coated = converted("varnish");
+    // A fit of colours may take another way where the layers are others, by a few of 255.
+    assert!(farthest(&plain, &coated) <= 4);
+    assert!(
+        farthest(&plain, &converted("Bone Black")) > 40,
+        "a fault would pass"
+    );
 }
 
 /// Paint that dries on the ground is matt in its first thin coat; wet paint is as glossy however thin.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use maulstick_appearance::colouring::Colouring;
 use maulstick_canvas::dry::{DRY_LAYERS_MOST, DryLayer, DryStack};
 use maulstick_canvas::page::{Page, Pager};
-use maulstick_canvas::planes::{Planes, TILE_CELLS, painted, plane_counts};
+use maulstick_canvas::planes::{Planes, painted, plane_counts};
 use maulstick_canvas::quantum::{Counts, SLOTS, add};
 use maulstick_canvas::tile::{Tile, TileId};
 
@@ -26,10 +26,7 @@ impl SurfaceState {
         free.iter_mut()
             .zip(&room)
             .for_each(|(free, room)| *free &= *room > 0.0);
-        for (_, plane) in &*tile.map(Tile::wet).unwrap_or_default() {
-            let cells = free.iter_mut().zip(plane.iter());
-            cells.for_each(|(free, count)| *free &= *count == 0.0);
-        }
+        cover(&mut free, &tile.map(Tile::wet).unwrap_or_default());
         free.contains(&true).then_some(free)
     }
 
@@ -93,8 +90,8 @@ impl SurfaceState {
         (tiles, given)
     }
 
-    /// The tiles of a part without the varnish, the paints of `slots`, that lies uppermost there, and the numbers of its
-    /// layers.
+    /// The tiles of a part without the varnish, the paints of `slots`, that lies uppermost there, cell by cell, and the
+    /// numbers of its layers.
     pub(crate) fn unvarnished(&self, part: &Part, slots: &[usize]) -> (Changed, BTreeSet<u32>) {
         let mut tiles = Changed::new();
         let mut numbers = BTreeSet::new();
@@ -105,47 +102,72 @@ impl SurfaceState {
             let Some(free) = self.free(part, id, Some(tile)) else {
                 continue;
             };
-            let mut kept = Vec::new();
-            let mut below = tile.dry();
-            while let Some(stack) = below {
-                let planes = stack.layer().planes.get();
-                let is_varnish = planes.iter().all(|(slot, _)| slots.contains(slot));
-                if !is_varnish || planes.is_empty() || !planes.own().is_empty() {
-                    break;
-                }
-                numbers.insert(stack.layer().number);
-                kept.push((stack.layer(), remaining(&planes, &free)));
-                below = stack.below();
+            if let Some(dry) = without_varnish(tile.dry(), free, slots, &mut numbers) {
+                let tile = Tile::of_pages(tile.wet_page().cloned(), dry);
+                tiles.push((id, Arc::new(tile)));
             }
-            if kept.is_empty() {
-                continue;
-            }
-            let dry = kept
-                .into_iter()
-                .rev()
-                .fold(below.cloned(), |below, (layer, left)| {
-                    if left.is_empty() {
-                        return below;
-                    }
-                    let planes =
-                        Page::new(layer.planes.pager(), Arc::new(left), Some(&layer.planes));
-                    let number = layer.number;
-                    Some(DryStack::over(below, DryLayer { number, planes }))
-                });
-            let tile = Tile::of_pages(tile.wet_page().cloned(), dry);
-            tiles.push((id, Arc::new(tile)));
         }
         (tiles, numbers)
     }
 }
 
-/// Planes without the cells that are `free`.
-fn remaining(planes: &Planes, free: &[bool]) -> Planes {
-    debug_assert_eq!(free.len(), TILE_CELLS);
+/// Layers without the varnish over which no paint lies on a free cell; `None` where there is none.
+fn without_varnish(
+    stack: Option<&Arc<DryStack>>,
+    mut free: Vec<bool>,
+    slots: &[usize],
+    numbers: &mut BTreeSet<u32>,
+) -> Option<Option<Arc<DryStack>>> {
+    let mut below = stack;
+    // The layers from the newest down, with what is left of those that lose varnish.
+    let mut layers: Vec<(&DryLayer, Option<Planes>)> = Vec::new();
+    let mut lowest = None;
+    while let Some(stack) = below.filter(|_| free.contains(&true)) {
+        let layer = stack.layer();
+        let planes = layer.planes.get();
+        let left = if planes.iter().all(|(slot, _)| slots.contains(slot)) && planes.own().is_empty()
+        {
+            remaining(&planes, &free)
+        } else {
+            cover(&mut free, &planes);
+            None
+        };
+        below = stack.below();
+        if left.is_some() {
+            numbers.insert(layer.number);
+            lowest = Some((layers.len(), below));
+        }
+        layers.push((layer, left));
+    }
+    let (last, under) = lowest?;
+    let laid = layers.into_iter().take(last + 1).rev();
+    Some(laid.fold(under.cloned(), |below, (layer, left)| {
+        let planes = match left {
+            None => layer.planes.clone(),
+            Some(left) if left.is_empty() => return below,
+            Some(left) => Page::new(layer.planes.pager(), Arc::new(left), Some(&layer.planes)),
+        };
+        let number = layer.number;
+        Some(DryStack::over(below, DryLayer { number, planes }))
+    }))
+}
+
+/// Takes the cells on which planes have paint from those that are free.
+fn cover(free: &mut [bool], planes: &Planes) {
+    for (_, plane) in planes {
+        let cells = free.iter_mut().zip(plane.iter());
+        cells.for_each(|(free, count)| *free &= *count == 0.0);
+    }
+}
+
+/// Planes without the cells that are `free`; `None` if these have nothing.
+fn remaining(planes: &Planes, free: &[bool]) -> Option<Planes> {
+    let mut bare = free.to_vec();
+    cover(&mut bare, planes);
     let kept = planes.iter().map(|(slot, plane)| {
         let cells = plane.iter().zip(free);
         let left = cells.map(|(count, free)| if *free { 0.0 } else { *count });
         (*slot, left.collect())
     });
-    painted(kept)
+    (bare != free).then(|| painted(kept))
 }
