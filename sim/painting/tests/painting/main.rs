@@ -16,3 +16,4 @@ mod scraping;
 mod sequencer;
 mod studio;
 mod threads;
+mod varnish;
