@@ -1,5 +1,7 @@
 //! Clumps: wet strips that come together toward the point.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use super::{Head, STATIONS, place_along, rest_point, smoothstep};
@@ -44,6 +46,6 @@ impl Head {
                 }
             }
         }
-        self.clumped = Some(planes);
+        self.clumped = Some(Arc::new(planes));
     }
 }

@@ -1,6 +1,8 @@
 //! Disorder of the bristles. It changes with each stroke, so that no two have the same streaks or ends, and along it:
 //! tresses part and regroup within some centimetres, so that no streak goes on to the end.
 
+use std::sync::Arc;
+
 use super::{Head, STATIONS, place_along, smoothstep};
 use crate::file::BrushFile;
 use crate::file::sections::Hair;
@@ -103,6 +105,7 @@ impl Head {
         });
         head.straying.drawn_back.clear();
         head.straying.ahead.clear();
+        let mut closed = [0, 1].map(|axis| Vec::clone(&self.closed[axis]));
         for (strip, root) in self.roots.iter().enumerate() {
             let other = unit(seed, [strip as i64, OTHERS]);
             if other < 0.5 {
@@ -124,9 +127,12 @@ impl Head {
             for station in 0..STATIONS {
                 let bent = smoothstep(place_along(station)) as f32;
                 let i = station * self.strips + strip;
-                head.closed[0][i] += bent * across * self.half_m[station][0];
-                head.closed[1][i] += bent * aside * self.half_m[station][1];
+                closed[0][i] += bent * across * self.half_m[station][0];
+                closed[1][i] += bent * aside * self.half_m[station][1];
             }
+        }
+        for (plane, closed) in head.closed.iter_mut().zip(closed) {
+            *plane = Arc::new(closed);
         }
         head
     }

@@ -13,6 +13,8 @@ mod lay;
 pub mod place;
 pub mod weights;
 
+use std::sync::Arc;
+
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use maulstick_num::atan2;
 use maulstick_num::geometry::{Rigid, shortest_arc};
@@ -34,34 +36,34 @@ pub const STATIONS: usize = 9;
 /// Depth of the point below the surface, as a share of the head's length, at which the head is fully open.
 const OPEN_AT: f64 = 0.35;
 
-/// The strips of a brush.
+/// The strips of a brush. A copy shares what no disorder changes.
 #[derive(Clone, Debug)]
 pub struct Head {
-    spine_roots: Vec<SpineRoot>,
+    spine_roots: Arc<[SpineRoot]>,
     joints: usize,
     strips: usize,
     /// Weights of the strips, one plane a spine.
-    weights: Vec<Vec<f32>>,
+    weights: Arc<[Vec<f32>]>,
     /// Offsets of the profile from the spines' sum, brush frame, m: planes of x, y and z, `station · strips + strip`.
-    closed: [Vec<f32>; 3],
+    closed: [Arc<Vec<f32>>; 3],
     /// Offsets in x and y, added when pressed open, m.
-    opening: [Vec<f32>; 2],
+    opening: [Arc<Vec<f32>>; 2],
     /// Clumping on a clean brush and on a full one.
     clumping: [f32; 2],
-    clumped: Option<[Vec<f32>; 3]>,
+    clumped: Option<Arc<[Vec<f32>; 3]>>,
     /// Roots in shares of half the ferrule's width and thickness.
-    roots: Vec<[f32; 2]>,
+    roots: Arc<[[f32; 2]]>,
     /// Strips in the order of their roots around the ferrule.
-    around: Vec<u32>,
+    around: Arc<[u32]>,
     /// Strips in two orders in which neighbours stand beside each other.
-    beside: [Vec<u32>; 2],
+    beside: Arc<[Vec<u32>; 2]>,
     /// Height of each strip over the surface while the head is hardly pressed, 0 to 1, seeded.
-    lift: Vec<f32>,
+    lift: Arc<[f32]>,
     /// Paint capacity of each strip by the mean of all, seeded.
     capacity: Vec<f32>,
     /// Tangents of the middle of the head at rest.
     rest: Curve,
-    skin: Option<Skin>,
+    skin: Option<Arc<Skin>>,
     length_m: f64,
     straying: Straying,
     /// Half the width and thickness at each station, m.
@@ -147,31 +149,31 @@ impl Head {
         let mut head = Self {
             joints: tuft.joints(),
             strips: count,
-            closed: [const { Vec::new() }; 3],
-            opening: [const { Vec::new() }; 2],
+            closed: Default::default(),
+            opening: Default::default(),
             clumping: file.strips.clumping.map(|share| share as f32),
             clumped: None,
             roots: roots
                 .iter()
                 .map(|root| [root.x as f32, root.y as f32])
                 .collect(),
-            around: order_around(&roots),
-            beside: beside::orders(
+            around: order_around(&roots).into(),
+            beside: Arc::new(beside::orders(
                 &roots,
                 DVec2::new(file.radius_m(0.0), file.half_thickness_m(0.0)),
-            ),
-            lift,
+            )),
+            lift: lift.into(),
             capacity,
             rest,
-            skin: Skin::of(file, &tuft),
+            skin: Skin::of(file, &tuft).map(Arc::new),
             length_m: file.length_m(),
             straying: Straying::of(file),
             half_m: std::array::from_fn(|station| {
                 let at = place_along(station);
                 [file.radius_m(at), file.half_thickness_m(at)].map(|half| half as f32)
             }),
-            weights: weights_by_spine(&spines, &roots),
-            spine_roots: tuft.roots,
+            weights: weights_by_spine(&spines, &roots).into(),
+            spine_roots: tuft.roots.into(),
         };
         head.lay(file, &roots, &curves);
         head.clump(file, &roots);
@@ -185,18 +187,19 @@ impl Head {
             for (strip, root) in roots.iter().enumerate() {
                 let sum: DVec3 = curves
                     .iter()
-                    .zip(&self.weights)
+                    .zip(&*self.weights)
                     .map(|(curve, plane)| curve[station] * f64::from(plane[strip]))
                     .sum();
                 let off = rest_point(file, *root, station) - sum;
                 let planes = self.closed.iter_mut().zip(off.to_array());
-                planes.for_each(|(plane, value)| plane.push(value as f32));
+                planes.for_each(|(plane, value)| Arc::make_mut(plane).push(value as f32));
                 let at = place_along(station) * file.length_share(root.to_array());
                 let wide = file.radius_m(at).max(1e-9);
                 let wider = (opened / wide).max(1.0) - 1.0;
                 let half = [wide, file.half_thickness_m(at)];
                 for axis in 0..2 {
-                    self.opening[axis].push((root[axis] * half[axis] * wider) as f32);
+                    let opening = Arc::make_mut(&mut self.opening[axis]);
+                    opening.push((root[axis] * half[axis] * wider) as f32);
                 }
             }
         }
@@ -271,7 +274,7 @@ impl Head {
     /// The skin, if it has one.
     #[must_use]
     pub fn skin(&self) -> Option<&Skin> {
-        self.skin.as_ref()
+        self.skin.as_deref()
     }
 
     /// True if a state with this many joint angles belongs to this head.
@@ -321,13 +324,13 @@ impl Head {
             let frame = DMat3::from_quat(frame) * hold.per_m;
             let center = mean[station];
             let in_units = |place: DVec3| (place * hold.per_m).to_array().map(|v| v as f32);
-            let curves = curves.iter().zip(&self.weights);
+            let curves = curves.iter().zip(&*self.weights);
             let spines: Vec<_> = curves
                 .map(|(curve, weights)| (in_units(curve[station] - center), &weights[..]))
                 .collect();
             let HeadPose { x, y, z, .. } = into;
             let planes = [x, y, z].map(|plane| &mut plane[row.clone()]);
-            let clumped = self.clumped.iter().flatten();
+            let clumped = self.clumped.iter().flat_map(|planes| &**planes);
             let clumped: Vec<_> = clumped.map(|plane| &plane[row.clone()]).collect();
             let common = lay::Station {
                 closed: self.closed.each_ref().map(|plane| &plane[row.clone()]),

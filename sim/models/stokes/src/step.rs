@@ -133,7 +133,8 @@ impl StokesPaint {
         } else {
             self.reach.uncover_all(&voxels, footprint, step);
         }
-        report.from_nowhere = self.exchange.run(footprint, step).into();
+        // Only the contacts' columns are uncovered.
+        report.from_nowhere = self.exchange.run_in_place(footprint, step).into();
         self.reach.cover(&mut voxels, footprint, step.window);
         voxels.write(step.window);
         flow(step);

@@ -24,6 +24,7 @@ const CELL: f32 = 167_772.0;
 struct Easel {
     store: TileStore,
     window: Window,
+    scale: Scale,
     head: Head,
     file: BrushFile,
     load: BrushLoad,
@@ -39,16 +40,20 @@ impl Easel {
     }
 
     fn with(brush: &str, cells: u32, ground: Option<(usize, f32)>) -> Self {
+        Self::on(SCALE, brush, (cells, ground))
+    }
+
+    fn on(scale: Scale, brush: &str, (cells, ground): (u32, Option<(usize, f32)>)) -> Self {
         let file = BrushFile::library(brush).expect("a brush of the library");
         let head = Head::of(&file);
         let mut store = TileStore::new([cells; 2]);
         let all = store
             .around([0, 0], [i64::from(cells); 2])
             .expect("a surface");
-        let tooth = Tooth::new("linen", 1, SCALE.cell_m).expect("a tooth");
+        let tooth = Tooth::new("linen", 1, scale.cell_m).expect("a tooth");
         let relief = match ground {
-            Some(_) => Relief::flat(SCALE.cell_m),
-            None => Relief::new(tooth, SCALE.cell_m),
+            Some(_) => Relief::flat(scale.cell_m),
+            None => Relief::new(tooth, scale.cell_m),
         };
         let mut window = Window::open(&mut store, all, &relief).expect("not leased");
         if let Some((slot, quanta)) = ground {
@@ -58,6 +63,7 @@ impl Easel {
         Self {
             store,
             window,
+            scale,
             head,
             file,
             load,
@@ -67,7 +73,7 @@ impl Easel {
     }
 
     fn load(mut self, slot: usize) -> Self {
-        let traits = BrushTraits::of(&self.file, SCALE.cell_m, SCALE.zoom);
+        let traits = BrushTraits::of(&self.file, self.scale.cell_m, self.scale.zoom);
         self.load
             .fill(&self.head, &traits, &[(slot, 1.0)], None, (Half::Both, 1));
         self
@@ -79,7 +85,7 @@ impl Easel {
     }
 
     fn stroke_between(&mut self, [from, to]: [[f64; 2]; 2], height: f64) {
-        let traits = BrushTraits::of(&self.file, SCALE.cell_m, SCALE.zoom);
+        let traits = BrushTraits::of(&self.file, self.scale.cell_m, self.scale.zoom);
         let at = |[x_m, y_m]: [f64; 2]| {
             let solve = Solve {
                 event_ns: 0,
@@ -90,14 +96,14 @@ impl Easel {
                     position_m: [x_m, y_m, height * self.file.length_m()],
                     ..Pose::IDENTITY
                 },
-                zoom: SCALE.zoom,
+                zoom: self.scale.zoom,
                 angles_rad: vec![self.bend; self.file.spines.all_joints()],
                 contacts: Vec::new(),
             };
-            Waypoint::of(&solve, SCALE, 1.0)
+            Waypoint::of(&solve, self.scale, 1.0)
         };
         let mut model = StokesPaint::default();
-        let mut path = PathStepper::begin(&self.head, at(from), SCALE);
+        let mut path = PathStepper::begin(&self.head, at(from), self.scale);
         let cells = [self.window.width(), self.window.height()].map(|cells| cells as i64);
         path.advance(&self.head, (at(to), 0), |sweep, _| {
             model.step(&mut Step {
@@ -121,7 +127,7 @@ impl Easel {
         StokesPaint::default().rest(&mut Rest {
             window: &mut self.window,
             area: Area { from: [0; 2], size },
-            cell_m: SCALE.cell_m,
+            cell_m: self.scale.cell_m,
             stain: 0.0,
             thinner: None,
             settings: BySlot::default(),
@@ -219,6 +225,20 @@ fn no_quantum_is_lost_in_the_tooth() {
     let before = easel.counts();
     easel.stroke([0.004, 0.009], 0.016, 0.65);
     easel.stroke([0.009, 0.006], 0.017, 0.6);
+    assert_eq!(easel.counts(), before);
+    assert!(easel.laid() > 0.0);
+}
+
+/// On fine cells a step is several cells long, and thin films leave no voxel.
+#[test]
+fn no_quantum_is_lost_on_fine_cells() {
+    let scale = Scale {
+        cell_m: 0.5 * SCALE.cell_m,
+        ..SCALE
+    };
+    let mut easel = Easel::on(scale, "round", (256, None)).load(0);
+    let before = easel.counts();
+    easel.stroke([0.004, 0.012], 0.016, 0.65);
     assert_eq!(easel.counts(), before);
     assert!(easel.laid() > 0.0);
 }

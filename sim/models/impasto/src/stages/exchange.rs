@@ -121,6 +121,20 @@ struct Cells<'a> {
 impl Exchange {
     /// Exchanges the paint of one step; by slot, the uncounted quanta added to the canvas.
     pub fn run(&mut self, footprint: &Footprint, step: &mut Step<'_>) -> [i64; SLOTS] {
+        self.run_as(footprint, step, true)
+    }
+
+    /// [`run`](Self::run) that changes no cells beside the contacts: deposits are not spread along the step.
+    pub fn run_in_place(&mut self, footprint: &Footprint, step: &mut Step<'_>) -> [i64; SLOTS] {
+        self.run_as(footprint, step, false)
+    }
+
+    fn run_as(
+        &mut self,
+        footprint: &Footprint,
+        step: &mut Step<'_>,
+        is_spread: bool,
+    ) -> [i64; SLOTS] {
         let contacts = footprint.contacts.len();
         let ranges = self.balance.cut(contacts, shares_of(contacts));
         self.find_texels(footprint, &ranges, step.load.texels());
@@ -149,7 +163,7 @@ impl Exchange {
             share.share(granted, lasting);
             share.weigh(shared, on_texels);
         });
-        let spreads = self.sides.begin(footprint, step);
+        let spreads = self.sides.begin(footprint, step, is_spread);
         if spreads && layered {
             let covers = used.iter().flat_map(|share| share.covers(granted));
             self.sides.cover(covers);
@@ -164,6 +178,12 @@ impl Exchange {
             });
             self.sides.note_layered(step.window, contacts);
         }
+        self.exchange_all(step)
+    }
+
+    /// Exchanges all slots; by slot, the uncounted quanta.
+    fn exchange_all(&mut self, step: &mut Step<'_>) -> [i64; SLOTS] {
+        let sponge = step.handling.transfer == Transfer::Sponge;
         let mut from_nowhere = [0; SLOTS];
         for slot in 0..SLOTS {
             if !step.load.has(slot) && !step.window.has(slot) {

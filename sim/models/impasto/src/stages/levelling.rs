@@ -105,7 +105,7 @@ pub struct Levelling {
 }
 
 /// Columns and rows of a block, which rests as a whole.
-const BLOCK: usize = 16;
+pub(super) const BLOCK: usize = 16;
 
 /// Blocks of an area, row by row.
 #[derive(Clone, Debug, Default)]
@@ -277,23 +277,23 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Factor from the stress of finite differences to that of the wave itself. `bends` and `drop` are the falls of the
-/// surface's Laplacian and of its height between two cells, in cells; their ratio gives the wavelength.
+/// Factor from the pressure gradient of finite differences to that of the wave itself. `bends` and `drop` are the falls
+/// of the surface's Laplacian and of its height between two cells, in cells; their ratio gives the wavelength.
 ///
 /// Over a wave that advances by θ a cell, differences have the factor (sin ½θ/½θ)³ of the third derivative; the square
 /// of 2 sin ½θ is the fall of curvature by that of height, and this is (½θ/sin ½θ)³ within 1 % for waves of three cells
 /// and more, within 14 % for shorter ones.
 #[inline(always)]
 #[must_use]
-fn stress_factor(bends: f32, drop: f32) -> f32 {
+fn differences_miss(bends: f32, drop: f32) -> f32 {
     let short = bends * drop / larger(drop * drop, 1e-12);
     let short = larger(smaller(short, 4.0), 0.0);
     let cube = short * short * short;
-    1.0 + short * (0.125 + short * STRESS_FACTOR[0]) + STRESS_FACTOR[1] * cube * cube * cube
+    1.0 + short * (0.125 + short * MISSED[0]) + MISSED[1] * cube * cube * cube
 }
 
-/// Coefficients that make [`stress_factor`] exact at waves of four and of three cells.
-const STRESS_FACTOR: [f32; 2] = [0.0295, 6.48e-6];
+/// Coefficients that make [`differences_miss`] exact at waves of four and of three cells.
+const MISSED: [f32; 2] = [0.0295, 6.48e-6];
 
 /// The flow from a cell to its neighbour, as a share of the donor's available paint, and that paint.
 #[inline(always)]
@@ -307,9 +307,12 @@ fn flow(round: &Round, bare: f32, own: &Run<'_>, next: &Run<'_>, i: usize) -> [f
     let wets = [wet, wet_next].map(|wet| if wet > 0.0 { 1.0 } else { 0.0f32 });
     let of_paint = |[a, b]: [f32; 2]| (wets[0] * a + wets[1] * b) / larger(wets[0] + wets[1], 1.0);
     let yields = of_paint([own.yields[i], next.yields[i]]);
-    let stress = gradient.abs() * stress_factor(next.curve[i] - own.curve[i], drop);
-    let sheared = larger(height - yields / larger(stress, 1e-12), 0.0);
-    let mobility = round.mobility * of_paint([own.fluid[i], next.fluid[i]]);
+    let missed = differences_miss(next.curve[i] - own.curve[i], drop);
+    let sheared = larger(
+        height - yields / larger(missed * gradient.abs(), 1e-12),
+        0.0,
+    );
+    let mobility = round.mobility * missed * of_paint([own.fluid[i], next.fluid[i]]);
     let mobility = mobility * sheared * sheared * (3.0 * height - sheared) / 6.0;
     let goes = (smaller(mobility, round.most) - smaller(mobility, round.finer)) * gradient;
     let donor = if goes > 0.0 { wet } else { wet_next };

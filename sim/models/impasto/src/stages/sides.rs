@@ -108,10 +108,10 @@ wide! {
 }
 
 impl Sides {
-    /// Begins a step; true if its deposits are spread.
-    pub(crate) fn begin(&mut self, footprint: &Footprint, step: &Step<'_>) -> bool {
+    /// Begins a step whose deposits may be spread; true if they are.
+    pub(crate) fn begin(&mut self, footprint: &Footprint, step: &Step<'_>, may: bool) -> bool {
         self.spread = Spread::of(step);
-        if self.spread.reach() == 0 || footprint.fullest() > TAKES * CELL_MAX as f32 {
+        if !may || self.spread.reach() == 0 || footprint.fullest() > TAKES * CELL_MAX as f32 {
             self.spread = Spread::default();
             return false;
         }

@@ -21,10 +21,10 @@ const MOST: f64 = 0.25;
 /// 2⁻²⁴, the rounding of a height.
 const EPS: f64 = 1.0 / 16_777_216.0;
 
-/// The least and the greatest stress of a wave by that of its differences, which bends and falls by this between two
-/// cells, m. Its differences tell its length, and so its stress: by (½θ/sin ½θ)³, of which 1 % may be missing, and 14 %
+/// The least and the greatest pressure gradient of a wave by that of its differences, which bends and falls by this
+/// between two cells, m. Its differences tell its length, and so its gradient: by (½θ/sin ½θ)³, of which 1 % may be missing, and 14 %
 /// where it is shorter than three cells.
-fn stresses(bends: f64, drop: f64, rounding: f64) -> [f64; 2] {
+fn gradients_by(bends: f64, drop: f64, rounding: f64) -> [f64; 2] {
     if drop.abs() <= rounding {
         return [0.99, 4.0];
     }
@@ -121,7 +121,7 @@ impl Film<'_> {
         let rounding = 8.0 * CELL_M * EPS;
         let off = 24.0 * rounding * (TENSION / CELL_M.powi(3) + WEIGHT / CELL_M);
         let off = off + 8.0 * EPS * gradient.abs();
-        let stresses = stresses(curved * CELL_M.powi(3), s - s_next, 24.0 * rounding);
+        let by = gradients_by(curved * CELL_M.powi(3), s - s_next, 24.0 * rounding);
         let mean = |of: &dyn Fn([i64; 2]) -> f64| 0.5 * (of(at) + of(next));
         let height = mean(&|at| self.to_cells * self.quanta(at) * CELL_M);
         // Bare cells have no body. Thinner alone is e⁷ times as fluid.
@@ -140,7 +140,7 @@ impl Film<'_> {
             let sheared = (height - yields / (by * gradient.abs()).max(1e-300)).max(0.0);
             let mobility = sheared * sheared * (3.0 * height - sheared) / (6.0 * viscosity);
             // As a share of a cell's height, in the time of the round.
-            let mobility = mobility * self.seconds / (CELL_M * CELL_M);
+            let mobility = by * mobility * self.seconds / (CELL_M * CELL_M);
             let most = STABLE * CELL_M * CELL_M / TENSION;
             let volume = mobility.min(most) * gradient;
             let (donor, onto) = if volume > 0.0 { (at, next) } else { (next, at) };
@@ -153,7 +153,7 @@ impl Film<'_> {
             (volume / (self.to_cells * held)).clamp(-MOST, MOST)
         };
         let gradients = [gradient - off, gradient, gradient + off];
-        let all = gradients.map(|gradient| stresses.map(|by| goes(gradient, by)));
+        let all = gradients.map(|gradient| by.map(|by| goes(gradient, by)));
         let mut shares = all.concat();
         // A slope near the bound within rounding may count as either.
         if ((s - s_next).abs() / CELL_M - advances).abs() < 1e-5 {
