@@ -107,9 +107,8 @@ impl Rest {
         let seconds = self.seconds / self.rounds as f64;
         let round = Round::new(self.body, self.cell_m, seconds, to_cells, self.bare);
         let (mut levelling, mut advection) = (Levelling::default(), Advection::default());
-        let mut faces = Faces::still(&area);
         for number in 0..self.rounds / self.at_once {
-            faces.stop();
+            let mut faces = Faces::still(&area);
             let planes = [&mut faces.right[..], &mut faces.above[..]];
             let rounds = (self.at_once as u32, self.rests);
             let most = levelling.add(window, &area, &round, &self.thinner.into(), rounds, planes);

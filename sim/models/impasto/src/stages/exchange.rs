@@ -133,7 +133,7 @@ impl Exchange {
         &mut self,
         footprint: &Footprint,
         step: &mut Step<'_>,
-        is_spread: bool,
+        may_spread: bool,
     ) -> [i64; SLOTS] {
         let contacts = footprint.contacts.len();
         let ranges = self.balance.cut(contacts, shares_of(contacts));
@@ -163,7 +163,7 @@ impl Exchange {
             share.share(granted, lasting);
             share.weigh(shared, on_texels);
         });
-        let spreads = self.sides.begin(footprint, step, is_spread);
+        let spreads = self.sides.begin(footprint, step, may_spread);
         if spreads && layered {
             let covers = used.iter().flat_map(|share| share.covers(granted));
             self.sides.cover(covers);

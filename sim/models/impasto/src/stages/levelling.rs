@@ -285,15 +285,16 @@ impl<'a> Run<'a> {
 /// and more, within 14 % for shorter ones.
 #[inline(always)]
 #[must_use]
-fn differences_miss(bends: f32, drop: f32) -> f32 {
+fn wave_by_differences(bends: f32, drop: f32) -> f32 {
     let short = bends * drop / larger(drop * drop, 1e-12);
     let short = larger(smaller(short, 4.0), 0.0);
     let cube = short * short * short;
-    1.0 + short * (0.125 + short * MISSED[0]) + MISSED[1] * cube * cube * cube
+    1.0 + short * (0.125 + short * WAVE_BY_DIFFERENCES[0])
+        + WAVE_BY_DIFFERENCES[1] * cube * cube * cube
 }
 
-/// Coefficients that make [`differences_miss`] exact at waves of four and of three cells.
-const MISSED: [f32; 2] = [0.0295, 6.48e-6];
+/// Coefficients that make [`wave_by_differences`] exact at waves of four and of three cells.
+const WAVE_BY_DIFFERENCES: [f32; 2] = [0.0295, 6.48e-6];
 
 /// The flow from a cell to its neighbour, as a share of the donor's available paint, and that paint.
 #[inline(always)]
@@ -307,12 +308,9 @@ fn flow(round: &Round, bare: f32, own: &Run<'_>, next: &Run<'_>, i: usize) -> [f
     let wets = [wet, wet_next].map(|wet| if wet > 0.0 { 1.0 } else { 0.0f32 });
     let of_paint = |[a, b]: [f32; 2]| (wets[0] * a + wets[1] * b) / larger(wets[0] + wets[1], 1.0);
     let yields = of_paint([own.yields[i], next.yields[i]]);
-    let missed = differences_miss(next.curve[i] - own.curve[i], drop);
-    let sheared = larger(
-        height - yields / larger(missed * gradient.abs(), 1e-12),
-        0.0,
-    );
-    let mobility = round.mobility * missed * of_paint([own.fluid[i], next.fluid[i]]);
+    let by = wave_by_differences(next.curve[i] - own.curve[i], drop);
+    let sheared = larger(height - yields / larger(by * gradient.abs(), 1e-12), 0.0);
+    let mobility = round.mobility * by * of_paint([own.fluid[i], next.fluid[i]]);
     let mobility = mobility * sheared * sheared * (3.0 * height - sheared) / 6.0;
     let goes = (smaller(mobility, round.most) - smaller(mobility, round.finer)) * gradient;
     let donor = if goes > 0.0 { wet } else { wet_next };

@@ -109,9 +109,15 @@ wide! {
 
 impl Sides {
     /// Begins a step whose deposits may be spread; true if they are.
-    pub(crate) fn begin(&mut self, footprint: &Footprint, step: &Step<'_>, may: bool) -> bool {
+    pub(crate) fn begin(
+        &mut self,
+        footprint: &Footprint,
+        step: &Step<'_>,
+        may_spread: bool,
+    ) -> bool {
         self.spread = Spread::of(step);
-        if !may || self.spread.reach() == 0 || footprint.fullest() > TAKES * CELL_MAX as f32 {
+        if !may_spread || self.spread.reach() == 0 || footprint.fullest() > TAKES * CELL_MAX as f32
+        {
             self.spread = Spread::default();
             return false;
         }

@@ -135,12 +135,6 @@ impl Faces {
         }
     }
 
-    /// Stops all flow.
-    pub fn stop(&mut self) {
-        self.right.fill(0.0);
-        self.above.fill(0.0);
-    }
-
     /// Limits the outflow of a cell to its content, along either axis.
     pub fn limit(&mut self, width: usize) {
         let [leaves_x, leaves_y] = &mut self.leaves;

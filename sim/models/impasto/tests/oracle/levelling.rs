@@ -22,8 +22,8 @@ const MOST: f64 = 0.25;
 const EPS: f64 = 1.0 / 16_777_216.0;
 
 /// The least and the greatest pressure gradient of a wave by that of its differences, which bends and falls by this
-/// between two cells, m. Its differences tell its length, and so its gradient: by (½θ/sin ½θ)³, of which 1 % may be missing, and 14 %
-/// where it is shorter than three cells.
+/// between two cells, m. Its differences tell its length, and so its gradient: by (½θ/sin ½θ)³, of which 1 % may be
+/// missing, and 14 % where it is shorter than three cells.
 fn gradients_by(bends: f64, drop: f64, rounding: f64) -> [f64; 2] {
     if drop.abs() <= rounding {
         return [0.99, 4.0];
