@@ -16,7 +16,7 @@ pub const REACH: usize = 4;
 pub struct Spread {
     /// The axis along which it is longer: 0 x, 1 y.
     pub axis: u32,
-    /// Its length along that axis, cells; a deposit on one cell where it is at most 1.
+    /// Its length along that axis, cells; 0 for a deposit on one cell.
     pub cells: u32,
     /// Cells along the other axis in [`SLOPES`] cells along this one.
     pub slope: i32,
@@ -57,11 +57,7 @@ impl Spread {
     /// Number of cells to one side that get a part.
     #[must_use]
     pub fn reach(self) -> usize {
-        if self.cells > 1 {
-            self.cells as usize / 2
-        } else {
-            0
-        }
+        self.cells.div_ceil(2) as usize
     }
 
     /// Columns and rows from a cell to the one that is `off` further ahead.
@@ -77,13 +73,18 @@ impl Spread {
         }
     }
 
-    /// Share of a deposit that a cell `off` cells to the side gets.
+    /// Share of a deposit that a cell `off` > 0 cells to the side gets: of a bar whose middle may lie anywhere in its cell.
     #[must_use]
     pub fn share(self, off: usize) -> f32 {
-        // An even number of cells ends in the middle of two.
-        let halves = self.cells.is_multiple_of(2) && off == self.reach() && off > 0;
-        let part = 1.0 / self.cells.max(1) as f32;
-        if halves { 0.5 * part } else { part }
+        // Twice the distance from the end of a bar in the middle of its cell.
+        let ahead = 2 * off as i32 - self.cells as i32;
+        let covered = match ahead {
+            ..=-2 => 1.0,
+            -1 => 0.875,
+            0 => 0.5,
+            _ => 0.125,
+        };
+        covered / self.cells.max(1) as f32
     }
 }
 
@@ -99,16 +100,19 @@ mod tests {
                 ..Spread::default()
             };
             let reach = spread.reach();
-            assert!(reach <= REACH && (reach == 0) == (cells < 2));
+            assert!(reach <= REACH && (reach == 0) == (cells == 0));
             let sides: f32 = (1..=reach).map(|off| 2.0 * spread.share(off)).sum();
-            assert!((sides + spread.share(0) - 1.0).abs() < 1e-6, "{cells}");
-            // Its variance is that of a bar of so many cells, measured from cell to cell.
             let moment: f32 = (1..=reach)
                 .map(|off| 2.0 * spread.share(off) * (off * off) as f32)
                 .sum();
-            let length = cells.max(1) as f32;
+            // A bar's variance, that of its place and that of a place in the cell it falls on.
+            let want = if reach > 0 {
+                (cells * cells + 2) as f32 / 12.0
+            } else {
+                0.0
+            };
             assert!(
-                (moment - (length * length - 1.0) / 12.0).abs() < 0.26,
+                sides < 1.0 && (moment - want).abs() < 1e-5,
                 "{cells}: {moment}"
             );
         }

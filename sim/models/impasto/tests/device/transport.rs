@@ -305,6 +305,7 @@ fn paint_goes_both_ways() {
                 (_, false) => Exchanging::BRISTLES,
                 (_, true) => Exchanging::BLADE,
             };
+            scene.traits.step_cells = 0.0;
             scene.to.press = PRESS;
             scene.handling.push = false;
             scene

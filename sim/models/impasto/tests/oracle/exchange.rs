@@ -393,6 +393,8 @@ fn lay_on_top(scene: &mut Scene, seed: u64) {
 /// A scene of the test, its footprint and the rule of its head.
 fn prepared(seed: usize) -> (Scene, Footprint, Rule) {
     let mut scene = Scene::new(seed as u64);
+    // Its deposits stay on their cells.
+    scene.traits.step_cells = 0.0;
     let mut footprint = Footprint::default();
     footprint.find(&mut scene.step());
     scene.handling.transfer = match seed {

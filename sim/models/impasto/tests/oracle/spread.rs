@@ -9,17 +9,19 @@ use maulstick_model::footprint::Footprint;
 use crate::exchange::{Expected, PRESS, RULES, film, on, oracle};
 use crate::scene::Scene;
 
-/// Shares of a bar of `length` cells on the cells beside its middle.
+/// Shares of a bar of `length` cells on the cells beside the one that its middle lies in, wherever in it.
 fn bar(length: usize) -> Vec<f64> {
-    if length < 2 {
-        return Vec::new();
-    }
+    const PLACES: usize = 64;
     let half = length as f64 / 2.0;
-    let overlap = |off: usize| {
+    let overlap = |off: usize, middle: f64| {
         let [from, to] = [off as f64 - 0.5, off as f64 + 0.5];
-        (to.min(half) - from.max(-half)).max(0.0) / length as f64
+        (to.min(middle + half) - from.max(middle - half)).max(0.0)
     };
-    (1..=length / 2).map(overlap).collect()
+    let share = |off: usize| {
+        let places = (0..PLACES).map(|place| (place as f64 + 0.5) / PLACES as f64 - 0.5);
+        places.map(|middle| overlap(off, middle)).sum::<f64>() / (PLACES * length) as f64
+    };
+    (1..=length.div_ceil(2)).map(share).collect()
 }
 
 /// A cell's change: quanta that leave, quanta that come, and their tolerance.
@@ -130,7 +132,7 @@ fn lies_on_top(
 fn deposits_are_spread_along_the_step() {
     let (mut beside, mut inside, mut told) = (0, 0, 0);
     for seed in 0..24 {
-        let length = 2 + seed as usize % 4;
+        let length = 1 + seed as usize % 5;
         let scene = |cells: f32| {
             let mut scene = Scene::new(seed);
             scene.to.press = PRESS;
@@ -138,14 +140,14 @@ fn deposits_are_spread_along_the_step() {
             scene.traits.cell_per_reference = 1.0 / length as f32;
             scene
         };
-        let (mut alone, mut long) = (scene(1.0), scene(length as f32));
+        let (mut alone, mut long) = (scene(0.0), scene(length as f32));
         let mut footprint = Footprint::default();
         footprint.find(&mut alone.step());
         footprint.find(&mut long.step());
         let expected = oracle(&footprint.contacts, &long, RULES[0].1);
         let (changes, kinds) = spread(&footprint, &long, &expected, length);
         let (other, _) = spread(&footprint, &long, &expected, 3 * length);
-        let before = scene(1.0);
+        let before = scene(0.0);
         let counts = before.counts();
         for scene in [&mut alone, &mut long] {
             Exchange::default().run(&footprint, &mut scene.step());

@@ -49,13 +49,18 @@ fn going(i: u32, texel: u32) -> Going {
 // maulstick-model).
 fn reach_of_spread() -> u32 {
     let fullest = bitcast<f32>(atomicLoad(&stats[stat(FULLEST)]));
-    let length = (step.packed >> 1u) & 127u;
-    return select(0u, length / 2u, length > 1u && fullest <= TAKES * step.cell_max);
+    return select(0u, (length_of_spread() + 1u) / 2u, fullest <= TAKES * step.cell_max);
 }
 
 fn part_at(off: u32) -> f32 {
-    let length = (step.packed >> 1u) & 127u;
-    return select(1.0, 0.5, length % 2u == 0u && off == length / 2u) / f32(length);
+    let length = length_of_spread();
+    let ahead = 2 * i32(off) - i32(length);
+    let whole = select(0.5, 1.0, ahead < -1);
+    return select(whole, select(0.125, 0.875, ahead < 0), abs(ahead) == 1) / f32(length);
+}
+
+fn length_of_spread() -> u32 {
+    return (step.packed >> 1u) & 127u;
 }
 
 // Height of the paint on a cell, cells.
@@ -80,13 +85,14 @@ fn beside(i: u32, reach: u32) -> array<u32, 8> {
     let low = vec2<i32>(around.low);
     let high = vec2<i32>(around.high);
     let at = vec2<i32>(vec2(i % step.width, i / step.width));
+    let within = all(at >= low) && all(at < high);
     let slope = i32(step.packed) >> 24u;
     for (var n = 0u; n < 2u * reach; n++) {
         let off = i32(n / 2u + 1u);
         let aside = (off * slope + 32) >> 6u;
         let way = select(-1, 1, (n & 1u) == 1u);
         let place = at + way * select(vec2(off, aside), vec2(aside, off), (step.packed & 1u) == 1u);
-        let open = all(place >= low) && all(place < high);
+        let open = within && all(place >= low) && all(place < high);
         found[n] = select(NONE, u32(place.y) * step.width + u32(place.x), open);
     }
     return found;
