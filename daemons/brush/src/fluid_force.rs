@@ -15,16 +15,20 @@ pub const PERIOD_NS: u64 = 15_000_000;
 const DENSITY_KG_M3: f64 = 1e3;
 /// Film thickness at which half of the drag acts, m: bristles in a thinner one slide.
 const HALF_FILM_M: f64 = 25e-6;
-/// Drag at most, N·s/m: the servo samples it.
-const DRAG_MOST: f64 = 0.5;
+/// Factor on eq. 8.8, which gives 3 mN under a contact of 3 mm in paint from the tube at .1 m/s, less than a hand feels.
+/// It lies near L/h, by which a film of thickness h that is sheared under the whole contact drags more than one as thick
+/// as the contact is long.
+const FELT: f64 = 20.0;
+/// Drag at most, N·s/m: the servo samples it, and takes as much from no message.
+const DRAG_MOST: f64 = 0.8;
 
 /// Drag of the paint that a brush was last found in, N·s/m: μ·L, the viscous force by velocity on a
-/// contact of length L (Baxter 2004, eq. 8.8), as far as there is a film for it.
+/// contact of length L (Baxter 2004, eq. 8.8), times [`FELT`], as far as there is a film for it.
 #[must_use]
 pub fn drag(credit: &BrushCredit) -> f64 {
     let [film, viscosity, contact] = [credit.film_m, credit.viscosity_m2_s, credit.contact_m];
     let wet = f64::from(film) / (f64::from(film) + HALF_FILM_M);
-    let drag = DENSITY_KG_M3 * f64::from(viscosity) * f64::from(contact) * wet;
+    let drag = FELT * DENSITY_KG_M3 * f64::from(viscosity) * f64::from(contact) * wet;
     // A message from the bus may hold any number.
     if drag.is_finite() {
         drag.clamp(0.0, DRAG_MOST)
@@ -91,7 +95,7 @@ mod tests {
             wetness: 1.0,
             film_m,
             viscosity_m2_s,
-            contact_m: 0.01,
+            contact_m: 0.003,
             file: 0,
         }
     }
@@ -99,7 +103,16 @@ mod tests {
     #[test]
     fn stiff_paint_drags_and_thin_or_missing_paint_hardly_does() {
         let tube = drag(&credit(1e-3, 1e-2));
-        assert!((tube - 0.1 * 1e-3 / 1.025e-3).abs() < 1e-6, "μ·L: {tube}");
+        // Newtons on a hand that paints at an ordinary and at a fast pace, and in a wash.
+        let [slow, fast, wash] = [0.2 * tube, 1.0 * tube, 0.5 * drag(&credit(1e-3, 1e-5))];
+        assert!(
+            slow > 0.1 && fast < 1.0 && wash < 1e-3,
+            "{slow} {fast} {wash}"
+        );
+        // Half the contact, half the drag.
+        let mut half = credit(1e-3, 1e-2);
+        half.contact_m *= 0.5;
+        assert!((drag(&half) / tube - 0.5).abs() < 1e-6, "∝ L");
         assert!(drag(&credit(1e-3, 1e-4)) < 0.02 * tube);
         assert!(drag(&credit(5e-6, 1e-2)) < 0.2 * tube);
         assert_eq!(drag(&credit(0.0, 0.0)), 0.0);

@@ -78,7 +78,7 @@
 //! - Forces do not cross the bus: the node sends contact models, which the device evaluates at 1 kHz. k₁ is the solved
 //!   head's, or the brush file's five tuples, or the head linearised where it is (`force` of a device).
 //! - Paint drags by a fluid force: each credit brings film, viscosity and length of the contact, and every 15 ms the
-//!   node sends μ·L with its Jacobian (Baxter 2004, eq. 8.8). Contact models have no drag, so the hand feels it once;
+//!   node sends 20·μ·L with its Jacobian (Baxter 2004, eq. 8.8). Contact models have no drag, so the hand feels it once;
 //!   the solve never waits for paint.
 //! - The paint node sends relief only for devices with force; it is put on a grid around the hand's own tip, with the
 //!   edges of canvas and palette.

@@ -110,14 +110,21 @@ fn wet_paint_drags_a_moving_hand_by_the_fluid_force_and_by_no_model() {
     live.command(1, load);
     let felt = stroke(&mut live);
     println!("{} forces", felt.len());
-    let mut dragged = 0;
+    let (mut dragged, mut most_n) = (0, 0.0f64);
     for force in &felt {
         assert_eq!((force.device, force.device_epoch), (42, 11));
         maulstick_haptics::Fluid::new(force, 1.0).expect("a servo takes it");
         let power: f64 = (0..6).map(|i| force.wrench[i] * force.velocity[i]).sum();
         dragged += usize::from(power < 0.0);
+        most_n = force.wrench[..3]
+            .iter()
+            .map(|n| n * n)
+            .sum::<f64>()
+            .sqrt()
+            .max(most_n);
     }
-    assert!(dragged > 5, "{dragged}");
+    println!("at .1 m/s at most {most_n:.3} N");
+    assert!(dragged > 5 && most_n > 0.03, "{dragged}, {most_n} N");
     // Never twice in the hand.
     let all: Vec<_> = std::iter::from_fn(|| models.try_recv()).collect();
     assert!(!all.is_empty() && all.iter().all(|it| it.message.viscous_n_s_m == 0.0));
