@@ -8,6 +8,7 @@
 //! | `close` | asks before the window closes on a painting without a name |
 //! | `sketch_offer` | earlier sketches |
 //! | `dropped` | files dropped on the window |
+//! | `environment` | surroundings of the light |
 //! | `painting_file` | proposed folder and name, and the result of a command |
 //! | `save_status` | line at the lower edge |
 
@@ -16,6 +17,7 @@ mod choose;
 mod close;
 pub(crate) mod dialog;
 mod dropped;
+mod environment;
 mod export;
 mod new;
 mod open;
@@ -47,6 +49,7 @@ use crate::widgets::context::PanelContext;
 pub(crate) use dialog::wrong;
 use dialog::{Answer, in_words};
 use dropped::Dropped;
+use environment::EnvironmentFile;
 use export::ExportPicture;
 use maulstick_client::dispatcher::Outcome;
 use maulstick_client::request::Request;
@@ -67,6 +70,7 @@ enum Dialog {
     Export(ExportPicture),
     Picture(ChooseFile),
     Tracing(ChooseFile),
+    Environment(ChooseFile),
     Recording(ChooseFile),
     Close(ClosePainting),
 }
@@ -79,6 +83,7 @@ pub(crate) struct Files {
     waiting: Option<Request>,
     /// A dropped file that is being examined.
     dropping: Option<BackgroundTask<Dropped>>,
+    environment: EnvironmentFile,
     /// The painting that was last seen to be open.
     open: Option<PathBuf>,
     offer: SketchOffer,
@@ -146,6 +151,10 @@ impl Files {
                 let known = work.tracing().map(|tracing| &*tracing.path);
                 let choose = Self::picture(known, tr!("A picture to trace"), work);
                 self.begin(Dialog::Tracing(choose));
+            }
+            Action::ChooseEnvironment => {
+                let choose = Self::picture(None, tr!("A picture of the surroundings"), work);
+                self.begin(Dialog::Environment(choose));
             }
             _ => return false,
         }
@@ -224,6 +233,7 @@ impl Files {
     ) {
         self.remember(work);
         self.take_dropped(context, reference, work);
+        self.environment.take_in(work);
         dropped::hint(context);
         if let Some(act) = save_status::show(context, work) {
             self.follow(context, act, work);
@@ -266,7 +276,10 @@ impl Files {
                 let decision = close.show(context);
                 return self.decide(decision, work);
             }
-            Dialog::Picture(choose) | Dialog::Tracing(choose) | Dialog::Recording(choose) => {
+            Dialog::Picture(choose)
+            | Dialog::Tracing(choose)
+            | Dialog::Environment(choose)
+            | Dialog::Recording(choose) => {
                 let (answer, path) = choose.show(context);
                 let forget = choose.forgets();
                 if let Some(path) = path {
@@ -302,6 +315,7 @@ impl Files {
         match self.dialog.take() {
             Some(Dialog::Picture(_)) => reference.pin(context, &path, work.preferences),
             Some(Dialog::Tracing(_)) => work.trace(&path),
+            Some(Dialog::Environment(_)) => self.environment.read(context, path),
             _ => work.requests.session(SessionOrder::Play {
                 recording: path,
                 forget,
@@ -358,6 +372,7 @@ impl Files {
                         | Dialog::Close(_)
                         | Dialog::Picture(_)
                         | Dialog::Tracing(_)
+                        | Dialog::Environment(_)
                         | Dialog::Recording(_),
                     )
                     | None => work.notifications.of(&fault),

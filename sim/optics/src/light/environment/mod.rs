@@ -31,13 +31,14 @@ pub use panorama::Panorama;
 /// Levels of roughness .1, .2, .4 and .8.
 pub const LEVELS: usize = 4;
 /// Steps from texel to texel of the sharpest level either way; each rougher one has half as many.
-const STEPS: usize = 32;
+pub const STEPS: usize = 32;
 /// Texels of all levels.
 pub const TEXELS: usize = 33 * 33 + 17 * 17 + 9 * 9 + 5 * 5;
 /// Bytes of a texel of a map as bytes.
 pub const TEXEL_BYTES: usize = 4;
+const _: () = assert!(TEXELS * TEXEL_BYTES == maulstick_types::scene::ENVIRONMENT_BYTES);
 /// Roughness of the sharpest level.
-const SHARPEST: f32 = 0.1;
+pub const SHARPEST: f32 = 0.1;
 
 /// Texels of a level either way.
 #[must_use]
