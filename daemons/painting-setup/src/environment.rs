@@ -44,3 +44,36 @@ fn unread(path: &Path, error: &ImportError) -> UserError {
         .at(path.display().to_string())
         .help(help)
 }
+
+#[cfg(test)]
+mod tests {
+    use maulstick_types::scene::Light;
+
+    use super::*;
+
+    #[test]
+    fn surroundings_are_named_or_read_from_a_panorama() {
+        assert_eq!(environment("window"), Ok(Environment::Window));
+        assert!(environment("widow").is_err() && environment("none.hdr").is_err());
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("hall.png");
+        let write = |size: [u32; 2], value: u8| {
+            let file = std::fs::File::create(&path).expect("a file");
+            let mut encoder = png::Encoder::new(file, size[0], size[1]);
+            encoder.set_color(png::ColorType::Grayscale);
+            let pixels = vec![value; (size[0] * size[1]) as usize];
+            let written = encoder.write_header().and_then(|mut to| to.write_image_data(&pixels));
+            written.expect("written");
+            environment(&path.display().to_string())
+        };
+        let light = Light {
+            environment: write([64, 32], 200).expect("a hall"),
+            ..Light::default()
+        };
+        assert_eq!((light.environment.name(), light.check()), ("hall", Ok(())));
+        for fault in [write([64, 31], 200), write([64, 32], 0)] {
+            let fault = fault.expect_err("no surroundings");
+            assert!(fault.place.is_some() && fault.help.is_some(), "{fault}");
+        }
+    }
+}

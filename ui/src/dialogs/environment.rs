@@ -61,3 +61,54 @@ fn read(path: &Path) -> Result<Environment, ImportError> {
     let name = path.file_stem().unwrap_or_default();
     environment(&image, &name.to_string_lossy())
 }
+
+#[cfg(test)]
+mod tests {
+    use eframe::egui::Key;
+    use egui_kittest::kittest::Queryable as _;
+    use maulstick_types::command::Command;
+
+    use super::*;
+    use crate::input::keys::Action;
+    use crate::test_support::overlay_bench::{press, window, write};
+
+    /// Writes a grey picture of this size.
+    fn grey(path: &Path, width: u32, height: u32) {
+        let file = std::fs::File::create(path).expect("a file");
+        let mut encoder = png::Encoder::new(file, width, height);
+        encoder.set_color(png::ColorType::Grayscale);
+        let pixels = vec![90; (width * height) as usize];
+        let written = encoder.write_header().and_then(|mut to| to.write_image_data(&pixels));
+        written.expect("written");
+    }
+
+    #[test]
+    fn a_panorama_becomes_the_surroundings_and_another_picture_does_not() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut harness = window(Some(folder.path()));
+        let (hall, narrow) = (folder.path().join("hall.png"), folder.path().join("narrow.png"));
+        grey(&hall, 64, 32);
+        grey(&narrow, 40, 32);
+        let mut choose = |path: &Path| {
+            harness.state_mut().requests.act(Action::ChooseEnvironment);
+            harness.run_steps(3);
+            harness.get_by_label("A picture of the surroundings");
+            write(&mut harness, "Picture", &path.display().to_string());
+            press(&mut harness, Key::Enter);
+            let mut asked = Vec::new();
+            while asked.is_empty() && harness.state().told().is_empty() {
+                harness.step();
+                asked = harness.state_mut().asked();
+            }
+            (asked, harness.state().told())
+        };
+        let (asked, _) = choose(&hall);
+        let [(_, command)] = &asked[..] else {
+            panic!("{asked:?}");
+        };
+        let light = |command: &Command| command.edit::<Relight>().map(|relight| relight.light);
+        assert_eq!(light(command).expect("a light").environment.name(), "hall");
+        let (asked, told) = choose(&narrow);
+        assert!(asked.is_empty() && told.contains("narrow.png"), "{told}");
+    }
+}
