@@ -97,7 +97,9 @@ fn grey_ramp(place: &Place, name: &str, [width, height]: [u32; 2]) {
     encoder.set_color(png::ColorType::Grayscale);
     let row = (0..width).map(|x| (4 * x) as u8);
     let pixels: Vec<u8> = (0..height).flat_map(|_| row.clone()).collect();
-    let written = encoder.write_header().and_then(|mut to| to.write_image_data(&pixels));
+    let written = encoder
+        .write_header()
+        .and_then(|mut to| to.write_image_data(&pixels));
     written.expect("written");
 }
 
@@ -147,18 +149,31 @@ fn a_painting_dries_and_is_seen_under_another_light() {
     bus.close();
 }
 
+fn refused(place: &Place, args: &[&str], words: &[&str]) {
+    let output = place.run(args);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
+    for word in words {
+        assert!(said.contains(word), "{args:?}: no '{word}' in: {said}");
+    }
+}
+
+fn refuse_surroundings(place: &Place) {
+    grey_ramp(place, "narrow.png", [40, 30]);
+    for (name, words) in [
+        ("rom", ["'rom'", "'room'"]),
+        ("bad.csv", ["bad.csv", "PNG"]),
+        ("narrow.png", ["narrow.png", "40×30"]),
+    ] {
+        refused(place, &["canvas", "light", "--environment", name], &words);
+    }
+}
+
 #[test]
 fn what_a_rig_cannot_do_with_light_it_refuses_with_words() {
     let place = Place::new();
     let launcher = Launcher::up(&place, &[]);
-    let refused = |args: &[&str], words: &[&str]| {
-        let output = place.run(args);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
-        for word in words {
-            assert!(said.contains(word), "{args:?}: no '{word}' in: {said}");
-        }
-    };
+    let refused = |args: &[&str], words: &[&str]| refused(&place, args, words);
     place.write("bad.csv", "nm,power\n380,1\n400,-3\n");
     refused(
         &["canvas", "light", "--illuminant", "D56"],
@@ -172,19 +187,7 @@ fn what_a_rig_cannot_do_with_light_it_refuses_with_words() {
         &["canvas", "light", "--illuminant", "none.csv"],
         &["none.csv", "check the path"],
     );
-    refused(
-        &["canvas", "light", "--environment", "rom"],
-        &["'rom'", "did you mean 'room'"],
-    );
-    refused(
-        &["canvas", "light", "--environment", "bad.csv"],
-        &["bad.csv", "not an intact"],
-    );
-    grey_ramp(&place, "narrow.png", [40, 30]);
-    refused(
-        &["canvas", "light", "--environment", "narrow.png"],
-        &["narrow.png", "40×30"],
-    );
+    refuse_surroundings(&place);
     refused(&["canvas", "light", "--samples", "3"], &["4 to 16"]);
     refused(
         &["canvas", "light", "--rule", "simpson"],

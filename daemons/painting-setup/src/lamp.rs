@@ -5,7 +5,7 @@ use maulstick_painting::edits::LightChange;
 use maulstick_rig::UserError;
 use maulstick_types::scene::Light;
 
-use crate::environment::environment;
+use crate::surface::environment::environment;
 use crate::viewing::illuminant;
 
 /// The light after a change.

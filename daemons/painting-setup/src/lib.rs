@@ -9,11 +9,11 @@
 //! | [`cells`] | side of the cells, and how many a canvas may have |
 //! | [`destination`] | display or file that colours go to: profile and gamut |
 //! | [`document`] | paintings in files |
-//! | [`lamp`], [`environment`], [`viewing`] | light over a painting; what gloss mirrors; light, observer and rule of a table of colours |
+//! | [`lamp`], [`viewing`] | light over a painting; light, observer and rule of a table of colours |
 //! | [`memory`] | memory that is allocated at once |
 //! | `refusal` | refusals of a painting as the user sees them |
 //! | [`outputs`] | files that are written; none replaces one that is read |
-//! | [`surface`] | grounds and teeth by name and from files; pictures that are read |
+//! | [`surface`] | grounds, teeth and surroundings by name and from files; pictures that are read |
 //! | [`take_setup`] | setup that a take embeds |
 //!
 //! ```
@@ -36,7 +36,6 @@ mod brushes;
 pub mod cells;
 pub mod destination;
 pub mod document;
-pub mod environment;
 pub mod lamp;
 pub mod memory;
 pub mod options;

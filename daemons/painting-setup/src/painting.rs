@@ -8,8 +8,8 @@ use maulstick_rig::config::{LightSection, RigConfig};
 use maulstick_types::Mixture;
 use maulstick_types::scene::Light;
 
-use crate::environment::environment;
 use crate::refusal::refused;
+use crate::surface::environment::environment;
 use crate::surface::ground::GroundFile;
 use crate::viewing::illuminant;
 

@@ -8,7 +8,6 @@
 //! | `close` | asks before the window closes on a painting without a name |
 //! | `sketch_offer` | earlier sketches |
 //! | `dropped` | files dropped on the window |
-//! | `environment` | surroundings of the light |
 //! | `painting_file` | proposed folder and name, and the result of a command |
 //! | `save_status` | line at the lower edge |
 
@@ -17,7 +16,6 @@ mod choose;
 mod close;
 pub(crate) mod dialog;
 mod dropped;
-mod environment;
 mod export;
 mod new;
 mod open;
@@ -42,6 +40,7 @@ use dialog::fault::named;
 
 use crate::advice;
 use crate::input::keys::Action;
+use crate::panels::light::environment_file::EnvironmentFile;
 use crate::reference::Reference;
 use crate::rig::state::RigState;
 use crate::sessions::SessionOrder;
@@ -49,7 +48,6 @@ use crate::widgets::context::PanelContext;
 pub(crate) use dialog::wrong;
 use dialog::{Answer, in_words};
 use dropped::Dropped;
-use environment::EnvironmentFile;
 use export::ExportPicture;
 use maulstick_client::dispatcher::Outcome;
 use maulstick_client::request::Request;

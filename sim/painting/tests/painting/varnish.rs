@@ -1,10 +1,10 @@
 //! Varnish: it shines alike on all that is dry, is clear, and comes off where no paint lies on it.
 
 use maulstick_optics::colour::srgb_decode;
-use maulstick_painting::{LayerError, Painting};
 use maulstick_painting::edits::common::convert;
 use maulstick_painting::edits::{Applied, Dry, Finish, Undo, Varnish};
 use maulstick_painting::picture::{picture, unlit_picture};
+use maulstick_painting::{LayerError, Painting};
 use maulstick_types::scene::{CANVAS, Environment, Light};
 use maulstick_types::values::ModelName;
 

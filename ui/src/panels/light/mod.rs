@@ -2,6 +2,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | `environment_file` | surroundings from a picture |
 //! | `lamp_undo` | changes of the light, as undo takes them |
 //! | `pad` | pad on which the lamp is dragged |
 //! | `sphere` | a ball lit by the lamp |
@@ -24,6 +25,7 @@ use crate::panels::Panel;
 use crate::spectrum_file;
 use crate::widgets::context::{PanelContext, ask};
 
+pub(crate) mod environment_file;
 pub(crate) mod lamp_undo;
 mod pad;
 mod sphere;

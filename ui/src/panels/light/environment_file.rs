@@ -17,20 +17,20 @@ use crate::widgets::context::{PanelContext, ask};
 
 /// A picture that is being read.
 #[derive(Debug, Default)]
-pub(super) struct EnvironmentFile {
+pub(crate) struct EnvironmentFile {
     coming: Option<(PathBuf, BackgroundTask<Result<Environment, ImportError>>)>,
 }
 
 impl EnvironmentFile {
     /// Begins to read a file.
-    pub(super) fn read(&mut self, context: &Context, path: PathBuf) {
+    pub(crate) fn read(&mut self, context: &Context, path: PathBuf) {
         let file = path.clone();
         let work = move || read(&file);
         self.coming = Some((path, BackgroundTask::start(context, "environment", work)));
     }
 
     /// Changes the light once the file is read.
-    pub(super) fn take_in(&mut self, work: &mut PanelContext<'_>) {
+    pub(crate) fn take_in(&mut self, work: &mut PanelContext<'_>) {
         let Some(found) = self.coming.as_ref().map(|(_, task)| task.poll()) else {
             return;
         };
@@ -78,7 +78,9 @@ mod tests {
         let mut encoder = png::Encoder::new(file, width, height);
         encoder.set_color(png::ColorType::Grayscale);
         let pixels = vec![90; (width * height) as usize];
-        let written = encoder.write_header().and_then(|mut to| to.write_image_data(&pixels));
+        let written = encoder
+            .write_header()
+            .and_then(|mut to| to.write_image_data(&pixels));
         written.expect("written");
     }
 
@@ -86,7 +88,10 @@ mod tests {
     fn a_panorama_becomes_the_surroundings_and_another_picture_does_not() {
         let folder = tempfile::tempdir().expect("a folder");
         let mut harness = window(Some(folder.path()));
-        let (hall, narrow) = (folder.path().join("hall.png"), folder.path().join("narrow.png"));
+        let (hall, narrow) = (
+            folder.path().join("hall.png"),
+            folder.path().join("narrow.png"),
+        );
         grey(&hall, 64, 32);
         grey(&narrow, 40, 32);
         let mut choose = |path: &Path| {

@@ -62,7 +62,9 @@ mod tests {
             let mut encoder = png::Encoder::new(file, size[0], size[1]);
             encoder.set_color(png::ColorType::Grayscale);
             let pixels = vec![value; (size[0] * size[1]) as usize];
-            let written = encoder.write_header().and_then(|mut to| to.write_image_data(&pixels));
+            let written = encoder
+                .write_header()
+                .and_then(|mut to| to.write_image_data(&pixels));
             written.expect("written");
             environment(&path.display().to_string())
         };
