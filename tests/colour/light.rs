@@ -90,6 +90,33 @@ fn expose_by_hand(place: &Place) {
     assert_eq!(told["exposure"].as_f64(), Some(0.5));
 }
 
+/// Writes a picture that is brighter from pixel to pixel.
+fn grey_ramp(place: &Place, name: &str, [width, height]: [u32; 2]) {
+    let file = std::fs::File::create(place.path(name)).expect("a file");
+    let mut encoder = png::Encoder::new(file, width, height);
+    encoder.set_color(png::ColorType::Grayscale);
+    let row = (0..width).map(|x| (4 * x) as u8);
+    let pixels: Vec<u8> = (0..height).flat_map(|_| row.clone()).collect();
+    let written = encoder
+        .write_header()
+        .and_then(|mut to| to.write_image_data(&pixels));
+    written.expect("written");
+}
+
+/// Surroundings by name and from a picture change what the gloss shows.
+fn mirror_surroundings(place: &Place, day: &[u8]) {
+    grey_ramp(place, "hall.png", [64, 32]);
+    let mut before = day.to_vec();
+    for (name, known) in [("room", "room"), ("hall.png", "hall")] {
+        let told = place.json(&["canvas", "light", "--environment", name, "--json"]);
+        assert_eq!(told["environment"].as_str(), Some(known));
+        let after = picture(place, "around.png");
+        assert!(before != after, "{name}");
+        before = after;
+    }
+    place.done(&["canvas", "light", "--environment", "even"]);
+}
+
 #[test]
 fn a_painting_dries_and_is_seen_under_another_light() {
     let place = Place::new();
@@ -108,6 +135,7 @@ fn a_painting_dries_and_is_seen_under_another_light() {
     assert!(day != picture(&place, "lamp.png"));
     expose_by_hand(&place);
     place.done(&["canvas", "light", "--illuminant", "D65", "--adapt", "true"]);
+    mirror_surroundings(&place, &day);
     let again = picture(&place, "again.png");
     assert_same(&day, &again, "back under daylight");
 
@@ -121,18 +149,31 @@ fn a_painting_dries_and_is_seen_under_another_light() {
     bus.close();
 }
 
+fn refused(place: &Place, args: &[&str], words: &[&str]) {
+    let output = place.run(args);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
+    for word in words {
+        assert!(said.contains(word), "{args:?}: no '{word}' in: {said}");
+    }
+}
+
+fn refuse_surroundings(place: &Place) {
+    grey_ramp(place, "narrow.png", [40, 30]);
+    for (name, words) in [
+        ("rom", ["'rom'", "'room'"]),
+        ("bad.csv", ["bad.csv", "PNG"]),
+        ("narrow.png", ["narrow.png", "40×30"]),
+    ] {
+        refused(place, &["canvas", "light", "--environment", name], &words);
+    }
+}
+
 #[test]
 fn what_a_rig_cannot_do_with_light_it_refuses_with_words() {
     let place = Place::new();
     let launcher = Launcher::up(&place, &[]);
-    let refused = |args: &[&str], words: &[&str]| {
-        let output = place.run(args);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
-        for word in words {
-            assert!(said.contains(word), "{args:?}: no '{word}' in: {said}");
-        }
-    };
+    let refused = |args: &[&str], words: &[&str]| refused(&place, args, words);
     place.write("bad.csv", "nm,power\n380,1\n400,-3\n");
     refused(
         &["canvas", "light", "--illuminant", "D56"],
@@ -146,6 +187,7 @@ fn what_a_rig_cannot_do_with_light_it_refuses_with_words() {
         &["canvas", "light", "--illuminant", "none.csv"],
         &["none.csv", "check the path"],
     );
+    refuse_surroundings(&place);
     refused(&["canvas", "light", "--samples", "3"], &["4 to 16"]);
     refused(
         &["canvas", "light", "--rule", "simpson"],

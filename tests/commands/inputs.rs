@@ -128,6 +128,11 @@ fn nor_over_what_its_script_names() {
             "lamp.csv",
             "the spectrum of the light",
         ),
+        (
+            "light = { environment = \"weave.png\" }",
+            "weave.png",
+            "the environment",
+        ),
     ] {
         let script = format!("step = [\n{{ {step} }},\n]\n");
         std::fs::write(place.path("day.toml"), script).expect("written");

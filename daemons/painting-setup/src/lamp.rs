@@ -1,16 +1,17 @@
-//! Changes of the light over a painting, with the spectrum of a file.
+//! Changes of the light over a painting, with the spectrum and the surroundings of files.
 
 use maulstick_optics::Illuminant;
 use maulstick_painting::edits::LightChange;
 use maulstick_rig::UserError;
 use maulstick_types::scene::Light;
 
+use crate::surface::environment::environment;
 use crate::viewing::illuminant;
 
 /// The light after a change.
 ///
 /// # Errors
-/// A [`UserError`] for an unknown spectrum or a bad file, and for a light out of range.
+/// A [`UserError`] for an unknown spectrum or environment or a bad file, and for a light out of range.
 pub fn changed(change: &LightChange, light: &Light) -> Result<Light, UserError> {
     change.check_idle()?;
     let spectrum = match &change.illuminant {
@@ -26,5 +27,6 @@ pub fn changed(change: &LightChange, light: &Light) -> Result<Light, UserError> 
             Some((found.name, power))
         }
     };
-    Ok(change.on(light, spectrum)?)
+    let around = change.environment.as_deref().map(environment);
+    Ok(change.on(light, spectrum, around.transpose()?)?)
 }

@@ -13,7 +13,7 @@
 //! | [`memory`] | memory that is allocated at once |
 //! | `refusal` | refusals of a painting as the user sees them |
 //! | [`outputs`] | files that are written; none replaces one that is read |
-//! | [`surface`] | grounds and teeth by name and from files; pictures that are read |
+//! | [`surface`] | grounds, teeth and surroundings by name and from files; pictures that are read |
 //! | [`take_setup`] | setup that a take embeds |
 //!
 //! ```

@@ -38,6 +38,9 @@ pub struct KitOptions {
     /// Light: A, D50, D65, FL2, FL8, FL11, or a CSV file of nm,power
     #[arg(long, value_name = "NAME|FILE")]
     pub illuminant: Option<String>,
+    /// Surroundings that gloss mirrors: even, room, window, or a picture by latitude and longitude, twice as wide as high
+    #[arg(long, value_name = "NAME|FILE")]
+    pub environment: Option<String>,
     /// Ground: gesso, grey, black, a CSV file of nm,reflectance, or a picture
     #[arg(long, value_name = "NAME|FILE")]
     pub ground: Option<String>,
@@ -121,6 +124,9 @@ impl KitOptions {
         if let Some(illuminant) = &self.illuminant {
             config.light.illuminant.clone_from(illuminant);
         }
+        if let Some(environment) = &self.environment {
+            config.light.environment.clone_from(environment);
+        }
         if let Some(ground) = &self.ground {
             config.canvas.ground.clone_from(ground);
         }
@@ -155,6 +161,7 @@ impl KitOptions {
             (self.cell_mm.is_some(), "--cell-mm"),
             (self.paints.is_some(), "--paints"),
             (self.illuminant.is_some(), "--illuminant"),
+            (self.environment.is_some(), "--environment"),
             (self.ground.is_some(), "--ground"),
             (self.no_adapt, "--no-adapt"),
         ];

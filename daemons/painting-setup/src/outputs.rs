@@ -79,6 +79,10 @@ pub fn named_by(config: &RigConfig) -> Vec<UsedFile> {
         .filter_map(|brush| UsedFile::named("the brush", &brush.kind))
         .chain(UsedFile::given("the paints", config.paint.paints.as_ref()))
         .chain(UsedFile::light(&config.light.illuminant))
+        .chain(UsedFile::named(
+            "the environment",
+            &config.light.environment,
+        ))
         .chain(UsedFile::named("the ground", &config.canvas.ground))
         .chain(UsedFile::given("the profile", config.view.file()))
         .chain(hands.map(|hand| UsedFile::new("the take of a hand", hand)))
@@ -266,8 +270,9 @@ mod tests {
         config.brush[0].kind = "own.toml".into();
         config.canvas.ground = "linen.csv".into();
         config.light.illuminant = "lamp".into();
+        config.light.environment = "hall.hdr".into();
         config.view.profile = "screen.icc".into();
         config.paint.paints = Some("mine.csv".into());
-        assert_eq!(named_by(&config).len(), 5);
+        assert_eq!(named_by(&config).len(), 6);
     }
 }

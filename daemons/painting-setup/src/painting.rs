@@ -9,10 +9,11 @@ use maulstick_types::Mixture;
 use maulstick_types::scene::Light;
 
 use crate::refusal::refused;
+use crate::surface::environment::environment;
 use crate::surface::ground::GroundFile;
 use crate::viewing::illuminant;
 
-/// The light of the rig's settings, with the spectrum of its file if it names one.
+/// The light of the rig's settings, with the spectrum and the surroundings of files if it names them.
 fn light(section: &LightSection) -> Result<Light, UserError> {
     let mut light = section.light();
     if Illuminant::named(&section.illuminant).is_none() {
@@ -23,6 +24,11 @@ fn light(section: &LightSection) -> Result<Light, UserError> {
         light.illuminant = found.name;
         light.spectrum = found.power.0.to_vec();
     }
+    light.environment = environment(&section.environment).map_err(|fault| match fault.place {
+        None => fault.at("environment of [light], or --environment"),
+        Some(_) => fault,
+    })?;
+    light.check()?;
     Ok(light)
 }
 

@@ -49,14 +49,16 @@ pub fn take_setup(
         let power = read(Path::new(&config.light.illuminant))?;
         settings.light.illuminant = kit.add(power, "csv");
     }
-    if is_path(&config.canvas.ground) {
-        let file = Path::new(&config.canvas.ground);
-        let extension = if PictureKind::is_named(file) {
-            file.extension().unwrap_or_default().to_ascii_lowercase()
-        } else {
-            "csv".into()
-        };
-        settings.canvas.ground = kit.add(read(file)?, &extension.to_string_lossy());
+    for name in [&mut settings.canvas.ground, &mut settings.light.environment] {
+        if is_path(name) {
+            let file = Path::new(name.as_str());
+            let extension = if PictureKind::is_named(file) {
+                file.extension().unwrap_or_default().to_ascii_lowercase()
+            } else {
+                "csv".into()
+            };
+            *name = kit.add(read(file)?, &extension.to_string_lossy());
+        }
     }
     let text = toml::to_string(&settings).map_err(|error| unwritten(error.to_string()))?;
     kit.settings = kit.add(text.into_bytes(), "toml");

@@ -61,12 +61,12 @@ pub(super) fn undo(step: &Step<'_>) -> Result<Option<Act>, UserError> {
     }
 }
 
-/// The file that a step names, if it names one.
-pub(super) fn file_of(step: &Step<'_>) -> Result<Option<UsedFile>, UserError> {
+/// The files that a step names.
+pub(super) fn files_of(step: &Step<'_>) -> Result<Vec<UsedFile>, UserError> {
     let keys = &step.keys;
     let does = step.kind.form.key;
     let what = format!("the {does} at {}", step.place());
-    Ok(match does {
+    let file = match does {
         "take" => {
             let path = keys.text(does)?.map(|name| keys.source.folder.join(name));
             UsedFile::given(&what, path)
@@ -76,12 +76,19 @@ pub(super) fn file_of(step: &Step<'_>) -> Result<Option<UsedFile>, UserError> {
             name.and_then(|name| UsedFile::named(&what, &name))
         }
         "light" => {
-            let light = keys.table(does)?.map(|light| light.text("illuminant"));
-            let name = light.transpose()?.flatten().map(|name| keys.beside(name));
-            name.and_then(|name| UsedFile::light(&name))
+            let light = keys.table(does)?;
+            let named = |key| {
+                let name = light.as_ref().map(|light| light.text(key)).transpose()?;
+                Ok::<_, UserError>(name.flatten().map(|name| keys.beside(name)))
+            };
+            let spectrum = named("illuminant")?.and_then(|name| UsedFile::light(&name));
+            let around = named("environment")?;
+            let around = around.and_then(|name| UsedFile::named("the environment", &name));
+            return Ok(spectrum.into_iter().chain(around).collect());
         }
         _ => None,
-    })
+    };
+    Ok(file.into_iter().collect())
 }
 
 pub(super) fn switched_on(step: &Step<'_>) -> Result<(), UserError> {
@@ -274,10 +281,14 @@ pub(super) fn light(step: &Step<'_>) -> Result<Option<Act>, UserError> {
         return Err(fault.help(choice(key, LightChange::KEYS)));
     }
     let mut change: LightChange = keys.read(LightChange::deserialize)?;
-    change.illuminant = change.illuminant.map(|name| keys.beside(&name));
+    for name in [&mut change.illuminant, &mut change.environment] {
+        *name = name.take().map(|name| keys.beside(&name));
+    }
     change.check_idle()?;
-    let name = change.illuminant.clone().unwrap_or_default();
+    let named = [&change.illuminant, &change.environment];
+    let missing = |name: &&String| is_path(name) && !Path::new(name).exists();
+    let missing = named.into_iter().flatten().find(missing).cloned();
     let on_default = changed(&change, &PaintingSetup::default().light);
-    step.keys.named("light", file(&name), on_default)?;
+    step.keys.named("light", missing.as_deref(), on_default)?;
     Ok(Some(Act::Light(change)))
 }

@@ -177,7 +177,7 @@ impl Script {
                 let help = format!("a painting has at most {SLOTS}: mix it from those before");
                 return Err(UserError::usage(what).help(help).at(step.place()));
             }
-            script.files.extend(acts::file_of(&step)?);
+            script.files.extend(acts::files_of(&step)?);
             script.steps.push((step.place(), act));
         }
         Ok(script)

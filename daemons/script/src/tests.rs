@@ -471,7 +471,7 @@ fn each_edit_is_read_from_its_step() {
             Act::Edit(edit) => assert_eq!(*edit, example),
             Act::Undo(1) => assert!(example.is::<Undo>()),
             Act::Light(change) => {
-                let light = change.on(&Light::default(), None).expect("a light");
+                let light = change.on(&Light::default(), None, None).expect("a light");
                 let edit: Relight = example.read().expect("a light");
                 assert_eq!(light, edit.light);
             }

@@ -293,7 +293,13 @@ fn make_absolute(config: &mut RigConfig) -> Result<(), UserError> {
             .map_err(|error| UserError::writing(&record.folder, &error))?;
     }
     let kinds = config.brush.iter_mut().map(|brush| &mut brush.kind);
-    for text in kinds.chain([&mut config.light.illuminant, &mut config.canvas.ground]) {
+    let light = &mut config.light;
+    let named = [
+        &mut light.illuminant,
+        &mut light.environment,
+        &mut config.canvas.ground,
+    ];
+    for text in kinds.chain(named) {
         if is_path(text) {
             *text = absolute(Path::new(text.as_str()))?.display().to_string();
         }

@@ -268,6 +268,7 @@ impl RigConfig {
             .for_each(whole);
         let texts = [
             &mut self.light.illuminant,
+            &mut self.light.environment,
             &mut self.view.profile,
             &mut self.canvas.ground,
         ];

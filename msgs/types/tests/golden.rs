@@ -15,7 +15,7 @@ use maulstick_types::paint::{
     StepName, ThumbnailRequest,
 };
 use maulstick_types::scene::{
-    Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, WellKind,
+    Environment, Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, WellKind,
 };
 use maulstick_types::stylus::{StylusInfo, StylusPose, TakeEnd, TakeStatus};
 use maulstick_types::window::PendingOrders;
@@ -262,6 +262,10 @@ fn light() -> Light {
         rule: "gauss".into(),
         samples: 8,
         adapted: false,
+        environment: Environment::Picture {
+            name: "hall".into(),
+            texels: vec![128, 64, 0, 129],
+        },
     }
 }
 

@@ -5,7 +5,7 @@ use maulstick_num::geometry::Rigid;
 use maulstick_optics::light::{LOWEST_LAMP, Lamp, LampSetup};
 use maulstick_types::scene::{CANVAS, Light, Scene};
 
-use crate::light::cast;
+use crate::light::{cast, environment};
 
 /// Brightness of the lightest fiftieth of bare linen beyond its mean, by its mean and by the tangent of the lamp's angle
 /// from the vertical: measured on cells of .125 mm.
@@ -44,5 +44,6 @@ pub fn lamp_over(scene: &Scene, surface: u32) -> Lamp {
         relief: light.relief,
         softness: light.softness,
         colour: cast(light),
+        environment: environment(light),
     })
 }

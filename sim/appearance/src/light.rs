@@ -1,8 +1,11 @@
 //! The scene's light as input of the optics.
 
+use std::sync::Arc;
+
 use maulstick_optics::colour::apply;
+use maulstick_optics::light::EnvironmentMap;
 use maulstick_optics::{Illuminant, Observer, RuleKind, Spectrum, StudioSettings};
-use maulstick_types::scene::Light;
+use maulstick_types::scene::{Environment, Light};
 
 use crate::error::LookError;
 
@@ -57,6 +60,17 @@ pub fn cast(light: &Light) -> [f64; 3] {
     studio_settings(light).map_or([1.0; 3], |settings| {
         apply(&settings.to_rgb(), settings.white())
     })
+}
+
+/// What the gloss mirrors besides the lamp; `None` for an even room.
+#[must_use]
+pub fn environment(light: &Light) -> Option<Arc<EnvironmentMap>> {
+    match &light.environment {
+        Environment::Even => None,
+        Environment::Room => Some(EnvironmentMap::room()),
+        Environment::Window => Some(EnvironmentMap::window()),
+        Environment::Picture { texels, .. } => EnvironmentMap::from_bytes(texels).map(Arc::new),
+    }
 }
 
 /// True if two lights differ in their optical settings, which requires all colours to be recomputed.

@@ -12,7 +12,7 @@ pub enum ImportError {
     #[error("the file cannot be read: {0}")]
     File(#[source] std::io::Error),
     /// The file is not a picture, or is damaged.
-    #[error("this is not an intact PNG, JPEG, TIFF, OpenEXR or OpenRaster picture: {0}")]
+    #[error("this is not an intact PNG, JPEG, TIFF, OpenEXR, Radiance or OpenRaster picture: {0}")]
     NotAPicture(String),
     /// Its variant of the format is not supported.
     #[error("pictures of this kind are not read: {0}")]
@@ -31,6 +31,19 @@ pub enum ImportError {
     /// Its size in memory exceeds the limit.
     #[error("a picture of {0}×{1} pixels takes too much memory; make it smaller")]
     Memory(u32, u32),
+    /// As surroundings it is not twice as wide as high.
+    #[error(
+        "a picture of surroundings by latitude and longitude is twice as wide as high, not {0}×{1} pixels"
+    )]
+    NotPanoramic(usize, usize),
+    /// As surroundings it has a pixel of no light: across and down from the upper left one, which is 0, 0.
+    #[error(
+        "pixel {0}, {1} from the upper left corner has a radiance that is negative or infinite"
+    )]
+    Radiance(usize, usize),
+    /// As surroundings it has no light before the painting.
+    #[error("the middle half of this picture, which faces the painting, is black")]
+    Black,
     /// The canvas has more cells than the limit of resampling.
     #[error("a canvas of {0}×{1} cells is too large for a picture: it may have 67 million cells")]
     Canvas(usize, usize),

@@ -26,6 +26,7 @@
 //! | [`fit_to`] | a picture as large as a canvas |
 //! | [`embed`] | pictures for a painting's grounds and teeth |
 //! | [`underpaint`] | a picture as paint |
+//! | [`environment`] | a picture as surroundings |
 //!
 //! Its errors are [`ImportError`].
 //!
@@ -74,6 +75,7 @@
 //! history are drawn tile by tile while nobody paints; states share most tiles, so a few colours of each tile are kept.
 
 pub mod embed;
+pub mod environment;
 mod error;
 pub mod film;
 pub mod fit_to;

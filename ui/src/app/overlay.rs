@@ -302,7 +302,8 @@ impl Overlay {
             | Action::Export
             | Action::Play
             | Action::Reference
-            | Action::ChooseTracing => {
+            | Action::ChooseTracing
+            | Action::ChooseEnvironment => {
                 self.files.follow(context, act, work);
             }
             Action::Keys => self.keys = !self.keys,

@@ -16,7 +16,7 @@ use crate::sessions::RECORDING;
 
 /// The kinds of files that may be dropped.
 pub(crate) const KINDS: &str = tr_noop!(
-    "Drop a painting (.maul), a recording (.mcap), a picture to look at (PNG, JPEG, TIFF, OpenEXR, OpenRaster) or a brush (.toml)."
+    "Drop a painting (.maul), a recording (.mcap), a picture to look at (PNG, JPEG, TIFF, OpenEXR, Radiance, OpenRaster) or a brush (.toml)."
 );
 
 /// A dropped file, by its kind.

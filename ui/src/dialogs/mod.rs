@@ -40,6 +40,7 @@ use dialog::fault::named;
 
 use crate::advice;
 use crate::input::keys::Action;
+use crate::panels::light::environment_file::EnvironmentFile;
 use crate::reference::Reference;
 use crate::rig::state::RigState;
 use crate::sessions::SessionOrder;
@@ -67,6 +68,7 @@ enum Dialog {
     Export(ExportPicture),
     Picture(ChooseFile),
     Tracing(ChooseFile),
+    Environment(ChooseFile),
     Recording(ChooseFile),
     Close(ClosePainting),
 }
@@ -79,6 +81,7 @@ pub(crate) struct Files {
     waiting: Option<Request>,
     /// A dropped file that is being examined.
     dropping: Option<BackgroundTask<Dropped>>,
+    environment: EnvironmentFile,
     /// The painting that was last seen to be open.
     open: Option<PathBuf>,
     offer: SketchOffer,
@@ -146,6 +149,10 @@ impl Files {
                 let known = work.tracing().map(|tracing| &*tracing.path);
                 let choose = Self::picture(known, tr!("A picture to trace"), work);
                 self.begin(Dialog::Tracing(choose));
+            }
+            Action::ChooseEnvironment => {
+                let choose = Self::picture(None, tr!("A picture of the surroundings"), work);
+                self.begin(Dialog::Environment(choose));
             }
             _ => return false,
         }
@@ -224,6 +231,7 @@ impl Files {
     ) {
         self.remember(work);
         self.take_dropped(context, reference, work);
+        self.environment.take_in(work);
         dropped::hint(context);
         if let Some(act) = save_status::show(context, work) {
             self.follow(context, act, work);
@@ -266,7 +274,10 @@ impl Files {
                 let decision = close.show(context);
                 return self.decide(decision, work);
             }
-            Dialog::Picture(choose) | Dialog::Tracing(choose) | Dialog::Recording(choose) => {
+            Dialog::Picture(choose)
+            | Dialog::Tracing(choose)
+            | Dialog::Environment(choose)
+            | Dialog::Recording(choose) => {
                 let (answer, path) = choose.show(context);
                 let forget = choose.forgets();
                 if let Some(path) = path {
@@ -302,6 +313,7 @@ impl Files {
         match self.dialog.take() {
             Some(Dialog::Picture(_)) => reference.pin(context, &path, work.preferences),
             Some(Dialog::Tracing(_)) => work.trace(&path),
+            Some(Dialog::Environment(_)) => self.environment.read(context, path),
             _ => work.requests.session(SessionOrder::Play {
                 recording: path,
                 forget,
@@ -358,6 +370,7 @@ impl Files {
                         | Dialog::Close(_)
                         | Dialog::Picture(_)
                         | Dialog::Tracing(_)
+                        | Dialog::Environment(_)
                         | Dialog::Recording(_),
                     )
                     | None => work.notifications.of(&fault),

@@ -109,10 +109,21 @@ pub(crate) fn unread(error: &ImportError) -> String {
             x,
             y
         ),
+        ImportError::NotPanoramic(width, height) => tr!(
+            "Its {width} × {height} pixels are not twice as wide as high, as latitude and longitude are.",
+            width,
+            height
+        ),
+        ImportError::Radiance(x, y) => tr!(
+            "Its pixel {x}, {y} is darker than black or infinitely bright. Save it again without such.",
+            x,
+            y
+        ),
+        ImportError::Black => tr!("Its middle, which faces the painting, is black.").to_owned(),
         ImportError::Unsupported(_) => {
             tr!("It is of a kind that is not read. Save it as PNG.").to_owned()
         }
-        _ => tr!("It is damaged, or no PNG, JPEG, TIFF, OpenEXR or OpenRaster. Take another copy.")
+        _ => tr!("It is damaged, or no PNG, JPEG, TIFF, OpenEXR, Radiance or OpenRaster. Take another copy.")
             .to_owned(),
     }
 }

@@ -4,9 +4,12 @@
 use bytemuck::{Pod, Zeroable};
 use eframe::egui_wgpu::wgpu;
 use maulstick_optics::gamut::{FOR_COLOUR, Gamut, GamutMapping, HALVINGS, KNEE};
+use maulstick_optics::light::environment::{SHARPEST, STEPS};
 use maulstick_optics::light::gloss::ROUGHNESS;
 use maulstick_optics::light::shadow::{LEAST_DENOMINATOR, TAPS};
 use maulstick_optics::light::{AMBIENT, DIMMING, Lamp, SURFACE, Surroundings, sky};
+
+pub(crate) mod environment;
 
 use crate::render::gpu::{Filterable, Gpu, Pass, UNIFORM, texture_binding};
 
@@ -38,7 +41,8 @@ pub(crate) struct LampUniform {
     colour: [f32; 3],
     _pad2: f32,
     albedo: [f32; 3],
-    _pad3: f32,
+    /// 1 where the gloss mirrors the environment map, 0 in an even room.
+    mapped: f32,
     cells: [[i32; 4]; TAPS],
     /// Weight, s·c, s·l_z.
     runs: [[f32; 4]; TAPS],
@@ -74,7 +78,7 @@ impl LampUniform {
             colour: lamp.colour,
             _pad2: 0.0,
             albedo: lamp.albedo,
-            _pad3: 0.0,
+            mapped: f32::from(u8::from(lamp.environment.is_some())),
             cells: shadows.taps.map(|tap| {
                 let [[x, y], [x2, y2]] = tap.cells;
                 [x, y, x2, y2]
@@ -220,7 +224,10 @@ impl LightSurface {
     #[must_use]
     pub(crate) fn new(gpu: &Gpu, gamut: &Gamut) -> Self {
         let texel = texture_binding(Filterable::No);
-        let layout = gpu.layout("light_surface", &[UNIFORM, texel, texel, UNIFORM, UNIFORM]);
+        let layout = gpu.layout(
+            "light_surface",
+            &[UNIFORM, texel, texel, UNIFORM, UNIFORM, texel],
+        );
         let shader = gpu.shader("light_surface", include_str!("shaders/light_surface.wgsl"));
         let pipeline = gpu.pipeline(&Pass {
             name: "light_surface",
@@ -232,6 +239,8 @@ impl LightSurface {
                 ("ambient", f64::from(AMBIENT)),
                 ("surface", f64::from(SURFACE)),
                 ("dimming", f64::from(DIMMING)),
+                ("sharpest", f64::from(SHARPEST)),
+                ("steps", STEPS as f64),
                 ("smoothest", f64::from(ROUGHNESS[0])),
                 ("roughest", f64::from(ROUGHNESS[1])),
                 ("least", f64::from(LEAST_DENOMINATOR)),
@@ -257,14 +266,13 @@ impl LightSurface {
         }
     }
 
-    /// Binds a [`LampUniform`] and a [`WindowUniform`], the colours and the heights of an atlas.
+    /// Binds a [`LampUniform`] and a [`WindowUniform`]; the colours and the heights of an atlas, and an environment.
     #[must_use]
     pub(crate) fn bind(
         &self,
         gpu: &Gpu,
         [lamp, window]: [&wgpu::Buffer; 2],
-        colours: &wgpu::TextureView,
-        heights: &wgpu::TextureView,
+        [colours, heights, environment]: [&wgpu::TextureView; 3],
     ) -> wgpu::BindGroup {
         let resources = [
             lamp.as_entire_binding(),
@@ -272,6 +280,7 @@ impl LightSurface {
             wgpu::BindingResource::TextureView(heights),
             self.gamut.as_entire_binding(),
             window.as_entire_binding(),
+            wgpu::BindingResource::TextureView(environment),
         ];
         gpu.bind(&self.layout, &resources)
     }

@@ -12,6 +12,7 @@ use maulstick_optics::light::{Lamp, Surroundings};
 use maulstick_types::paint::TILE;
 
 use crate::render::gpu::Gpu;
+use crate::render::light_surface::environment::EnvironmentTexture;
 use crate::render::light_surface::{
     COLOUR, CellRect, HEIGHT, LIT, LampUniform, LightSurface, WindowUniform, joined,
 };
@@ -33,6 +34,7 @@ struct Unlit {
     height: wgpu::Texture,
     lamp: wgpu::Buffer,
     window: wgpu::Buffer,
+    environment: EnvironmentTexture,
     under: Option<LampUniform>,
     within: Option<WindowUniform>,
     bound: wgpu::BindGroup,
@@ -79,7 +81,9 @@ impl TileAtlas {
         let lit = view(&texture("lit", LIT, usage));
         let lamp = gpu.uniform::<LampUniform>("lamp");
         let window = gpu.uniform::<WindowUniform>("window");
-        let bound = pass.bind(gpu, [&lamp, &window], &view(&colour), &view(&height));
+        let environment = EnvironmentTexture::new(gpu);
+        let textures = [view(&colour), view(&height), environment.view()];
+        let bound = pass.bind(gpu, [&lamp, &window], textures.each_ref());
         Some(Self {
             state: AtlasState {
                 held: TileRect::NONE,
@@ -92,6 +96,7 @@ impl TileAtlas {
                 height,
                 lamp,
                 window,
+                environment,
                 under: None,
                 within: None,
                 bound,
@@ -192,6 +197,7 @@ impl TileAtlas {
         };
         let texel_m = cell_m * f64::from(1u32 << self.state.level.min(16));
         let surroundings = Surroundings::new(lamp, texel_m as f32);
+        let changed = unlit.environment.take(gpu, lamp.environment.as_ref());
         let lamp = LampUniform::new(lamp, &surroundings, texel_m as f32);
         let window = WindowUniform::new(&held);
         if unlit.within != Some(window) {
@@ -205,7 +211,7 @@ impl TileAtlas {
                 .write_buffer(&unlit.lamp, 0, bytemuck::bytes_of(&lamp));
             unlit.under = Some(lamp);
         }
-        if moved || self.stale.len() > MANY {
+        if moved || changed || self.stale.len() > MANY {
             self.stale = vec![held];
         }
         if self.stale.is_empty() {

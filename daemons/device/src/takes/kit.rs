@@ -51,6 +51,7 @@ pub fn use_kit(
     })?;
     let mut names = vec![
         settings.light.illuminant.clone(),
+        settings.light.environment.clone(),
         settings.canvas.ground.clone(),
     ];
     names.extend(settings.brush.iter().map(|brush| brush.kind.clone()));

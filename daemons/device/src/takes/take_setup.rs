@@ -20,7 +20,7 @@ const SETTINGS: &str = "settings";
 /// Prefix of the keys of the loads; four digits follow, so that they are in order.
 const LOAD: &str = "load.";
 /// Kinds of files, by the extension of their names.
-const KINDS: [(&str, &str); 9] = [
+const KINDS: [(&str, &str); 10] = [
     ("toml", "application/toml"),
     ("csv", "text/csv"),
     ("png", "image/png"),
@@ -29,6 +29,7 @@ const KINDS: [(&str, &str); 9] = [
     ("tif", "image/tiff"),
     ("tiff", "image/tiff"),
     ("exr", "image/x-exr"),
+    ("hdr", "image/vnd.radiance"),
     ("ora", "image/openraster"),
 ];
 

@@ -1,5 +1,6 @@
-//! Grounds and teeth of a surface: by name, and from files.
+//! Grounds and teeth of a surface, and surroundings: by name, and from files.
 
+pub mod environment;
 pub mod ground;
 pub mod picture;
 pub mod tooth;

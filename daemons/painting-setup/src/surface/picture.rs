@@ -29,7 +29,7 @@ pub fn no_picture(path: &Path, error: &ImportError) -> UserError {
         ImportError::Unsupported(_) => "save it as PNG, or as TIFF of RGB",
         ImportError::Beside(_) => "save it without its profile and notes",
         _ => {
-            "give a PNG, JPEG, TIFF, OpenEXR or OpenRaster picture of at most 20,000 pixels either way"
+            "give a PNG, JPEG, TIFF, OpenEXR, Radiance or OpenRaster picture of at most 20,000 pixels either way"
         }
     };
     UserError::usage(error.to_string())

@@ -69,7 +69,7 @@ impl ToothPicture {
             return Err(
                 UserError::usage("a tooth is made of a picture, and this is none")
                     .at(file)
-                    .help("give a PNG, JPEG, TIFF, OpenEXR or OpenRaster picture: white is high"),
+                    .help("give a PNG, JPEG, TIFF, OpenEXR, Radiance or OpenRaster picture: white is high"),
             );
         }
         Self::new(

@@ -104,6 +104,7 @@ fn tell(light: &Light, options: &LightOptions) -> Result<i32, UserError> {
             "illuminant": light.illuminant, "observer": light.observer, "adapted": light.adapted,
             "rule": light.rule, "samples": samples, "direction": direction,
             "intensity": intensity, "exposure": exposure, "relief": relief, "softness": softness,
+            "environment": light.environment.name(),
         }))?;
         return Ok(0);
     }
@@ -118,6 +119,7 @@ fn tell(light: &Light, options: &LightOptions) -> Result<i32, UserError> {
         light.illuminant,
         light.observer
     );
+    say!("environment: {}", light.environment.name());
     say!("intensity {intensity}, exposure {exposure:.3}, relief {relief}, softness {softness}");
     match light.rule.as_str() {
         "reference" => say!("all 101 wavelengths"),

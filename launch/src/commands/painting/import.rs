@@ -38,7 +38,7 @@ enum Purpose {
 pub struct ImportOptions {
     /// Painting
     file: PathBuf,
-    /// Picture: PNG, JPEG, TIFF, OpenEXR or OpenRaster
+    /// Picture: PNG, JPEG, TIFF, OpenEXR, Radiance or OpenRaster
     picture: PathBuf,
     /// Use of the picture
     #[arg(long = "as", value_name = "PURPOSE", default_value = "underpainting")]

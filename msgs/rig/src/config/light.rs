@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use maulstick_types::scene::Light;
+use maulstick_types::scene::{Environment, Light};
 use serde::{Deserialize, Serialize};
 
 /// `[light]`: the lamp at the start, and how its light becomes colour.
@@ -30,10 +30,12 @@ pub struct LightSection {
     pub relief: f64,
     /// Tangent of half the angle under which the lamp is seen.
     pub softness: f64,
+    /// What gloss mirrors: `even`, `room`, `window`, or a picture by latitude and longitude.
+    pub environment: String,
 }
 
 impl LightSection {
-    /// The light, but for a spectrum of its own; one of a file is called as the file is.
+    /// The light, but for a spectrum and surroundings of its own; a spectrum of a file is called as the file is.
     #[must_use]
     pub fn light(&self) -> Light {
         let name = Path::new(&self.illuminant).file_stem();
@@ -49,6 +51,7 @@ impl LightSection {
             rule: self.rule.clone(),
             samples: self.samples,
             adapted: self.adapt,
+            environment: Environment::named(&self.environment).unwrap_or_default(),
         }
     }
 }
@@ -67,6 +70,7 @@ impl Default for LightSection {
             exposure: None,
             relief: light.relief,
             softness: light.softness,
+            environment: light.environment.name().to_owned(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::quantity;
 use crate::values::{OutOfRange, Quantity};
-use crate::wire::define::wire_struct;
+use crate::wire::define::{wire_enum, wire_struct};
 
 quantity! {
     /// Factor on the light's strength.
@@ -35,8 +35,78 @@ pub const RULES: [&str; 3] = ["gauss", "fitted", "reference"];
 /// The name of an illuminant has at most this many bytes.
 pub const ILLUMINANT_NAME_MAX: usize = 128;
 
+/// Bytes of the map of [`Environment::Picture`].
+pub const ENVIRONMENT_BYTES: usize = 4 * (33 * 33 + 17 * 17 + 9 * 9 + 5 * 5);
+/// Largest exponent of its texels: radiances below 2¹⁶ times their mean.
+const EXPONENT_MAX: u8 = 128 + 16;
+
+wire_enum! {
+    /// Surroundings of a picture, which its gloss mirrors besides the lamp.
+    #[derive(Default, Eq)]
+    pub enum Environment {
+        /// A room that is even, and dimmer below the picture.
+        #[default]
+        Even,
+        /// A studio: a window wall at the left, a dim wall behind the viewer.
+        Room,
+        /// A dark room with a tall window of eight panes at the left.
+        Window,
+        /// Surroundings of a picture file.
+        Picture {
+            /// Name of the file without its ending.
+            name: String,
+            /// What slopes mirror at roughness .1, .2, .4 and .8, relative radiance of mean 1: squares of 33, 17, 9 and
+            /// 5 texels a side over slopes of −1 to 1, rows from the lowest. Texel (i, j) of a square of n is what the
+            /// slope (1 − 2i/(n − 1), 1 − 2j/(n − 1)) mirrors to a viewer straight above. A texel is mantissas of linear
+            /// red, green and blue and an exponent e: m·2^(e − 136).
+            texels: Vec<u8>,
+        },
+    }
+}
+
+impl Environment {
+    /// Names of those that need no file.
+    pub const NAMES: [&'static str; 3] = ["even", "room", "window"];
+
+    /// One of these by its name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        let place = Self::NAMES.iter().position(|own| *own == name)?;
+        [Self::Even, Self::Room, Self::Window]
+            .into_iter()
+            .nth(place)
+    }
+
+    /// Its name, or that of its file.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Even => Self::NAMES[0],
+            Self::Room => Self::NAMES[1],
+            Self::Window => Self::NAMES[2],
+            Self::Picture { name, .. } => name,
+        }
+    }
+
+    fn check(&self) -> Result<(), LightError> {
+        let Self::Picture { name, texels } = self else {
+            return Ok(());
+        };
+        if name.len() > ILLUMINANT_NAME_MAX {
+            return Err(LightError::EnvironmentName(name.len()));
+        }
+        let mut exponents = texels.chunks(4).map(|texel| texel.last().copied());
+        let is_bounded = exponents.all(|exponent| exponent <= Some(EXPONENT_MAX));
+        if texels.len() == ENVIRONMENT_BYTES && is_bounded {
+            Ok(())
+        } else {
+            Err(LightError::Environment)
+        }
+    }
+}
+
 wire_struct! {
-    /// The lamp, and how its light becomes colour.
+    /// The lamp, what is around, and how its light becomes colour.
     pub struct Light {
         /// Toward the lamp, canvas frame; of any length.
         pub direction: [f64; 3],
@@ -61,6 +131,9 @@ wire_struct! {
         pub samples: u32,
         /// True if the eye is adapted to the light's white; otherwise its cast stays.
         pub adapted: bool,
+        /// What gloss mirrors besides the lamp.
+        #[serde(default)]
+        pub environment: Environment,
     }
 }
 
@@ -79,6 +152,7 @@ impl Default for Light {
             rule: "fitted".to_owned(),
             samples: 16,
             adapted: true,
+            environment: Environment::Even,
         }
     }
 }
@@ -101,6 +175,12 @@ pub enum LightError {
     /// An observer that the CIE does not have.
     #[error("there is no CIE observer of {0}: choose 1931 or 1964")]
     Observer(u32),
+    /// The name of surroundings that is too long.
+    #[error("the name of an environment has at most {ILLUMINANT_NAME_MAX} bytes, not {0}")]
+    EnvironmentName(usize),
+    /// Surroundings that are no map.
+    #[error("this is not an environment: give {ENVIRONMENT_BYTES} bytes of radiances below 65536")]
+    Environment,
     /// An unknown sampling rule.
     #[error("there is no such sampling rule: choose one of {}", RULES.join(", "))]
     Rule,
@@ -137,6 +217,6 @@ impl Light {
         if self.rule != "reference" {
             Wavelengths::check(f64::from(self.samples))?;
         }
-        Ok(())
+        self.environment.check()
     }
 }

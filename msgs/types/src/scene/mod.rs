@@ -10,8 +10,8 @@ use crate::values::ValueError;
 use crate::wire::define::{message, wire_enum, wire_struct};
 
 pub use light::{
-    Exposure, ILLUMINANT_NAME_MAX, Intensity, Light, LightError, RULES, Relief, Softness,
-    Wavelengths,
+    ENVIRONMENT_BYTES, Environment, Exposure, ILLUMINANT_NAME_MAX, Intensity, Light, LightError,
+    RULES, Relief, Softness, Wavelengths,
 };
 
 /// The canvas.
@@ -250,7 +250,7 @@ impl Tuning {
 
 message! {
     /// The desk; cached for late joiners.
-    pub struct Scene [version 6, at most 16777216 bytes] {
+    pub struct Scene [version 7, at most 16777216 bytes] {
         /// Grows with every change.
         pub version: u64,
         /// The canvas first.

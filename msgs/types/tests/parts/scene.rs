@@ -2,7 +2,7 @@
 
 use maulstick_types::Mixture;
 use maulstick_types::scene::{
-    Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
+    Environment, Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
 };
 
 use super::{handling, pose};
@@ -50,6 +50,10 @@ fn light() -> Light {
         rule: "gauss".into(),
         samples: 8,
         adapted: false,
+        environment: Environment::Picture {
+            name: "hall".into(),
+            texels: vec![128, 64, 0, 129],
+        },
     }
 }
 

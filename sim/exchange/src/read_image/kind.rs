@@ -13,6 +13,8 @@ pub enum PictureKind {
     Tiff,
     /// OpenEXR, linear light.
     Exr,
+    /// Radiance, linear light.
+    Hdr,
     /// OpenRaster: the whole picture in it.
     Ora,
 }
@@ -21,7 +23,7 @@ pub enum PictureKind {
 pub const HEAD: usize = 64;
 
 /// First bytes of the files of each kind.
-const MAGIC: [(&[u8], PictureKind); 7] = [
+const MAGIC: [(&[u8], PictureKind); 8] = [
     (b"\x89PNG\r\n\x1a\n", PictureKind::Png),
     (b"\xff\xd8\xff", PictureKind::Jpeg),
     (b"II*\0", PictureKind::Tiff),
@@ -29,6 +31,7 @@ const MAGIC: [(&[u8], PictureKind); 7] = [
     (b"II+\0", PictureKind::Tiff),
     (b"MM\0+", PictureKind::Tiff),
     (b"\x76\x2f\x31\x01", PictureKind::Exr),
+    (b"#?RADIANCE", PictureKind::Hdr),
 ];
 /// An archive, whose first file has its type (openraster.org, *File layout*).
 const ARCHIVE: &[u8] = b"PK\x03\x04";
@@ -36,7 +39,8 @@ const OPEN_RASTER: &[u8] = b"mimetypeimage/openraster";
 
 impl PictureKind {
     /// Endings of pictures' names, in lower case.
-    pub const ENDINGS: [&'static str; 7] = ["png", "jpg", "jpeg", "tif", "tiff", "exr", "ora"];
+    pub const ENDINGS: [&'static str; 8] =
+        ["png", "jpg", "jpeg", "tif", "tiff", "exr", "hdr", "ora"];
 
     /// The kind of a file by its first bytes; [`HEAD`] bytes suffice.
     #[must_use]
@@ -72,7 +76,7 @@ mod tests {
         assert_eq!(PictureKind::of(&archive[..30]), None, "of letters, say");
         assert_eq!(PictureKind::of(b"GIF89a"), None);
         assert_eq!(PictureKind::of(b""), None);
-        for name in ["a.PNG", "b.Jpeg", "/c/d.EXR", "e.ora"] {
+        for name in ["a.PNG", "b.Jpeg", "/c/d.EXR", "e.ora", "f.hdr"] {
             assert!(PictureKind::is_named(Path::new(name)), "{name}");
         }
         for name in ["a", "png", "a.gif", ".png"] {

@@ -1,4 +1,4 @@
-//! Pictures from files: PNG, JPEG, TIFF, OpenEXR and OpenRaster.
+//! Pictures from files: PNG, JPEG, TIFF, OpenEXR, Radiance and OpenRaster.
 //!
 //! A picture stays in memory in the form of its file, at most 8 bytes a pixel (16 for one of floats), and its rows are
 //! converted one at a time. Its colours follow the file's profile of grey or of RGB, the marks of PNG, or
@@ -8,12 +8,13 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`kind`] | which pictures are read |
-//! | `png_file`, `jpeg_file`, `tiff_file`, `exr_file`, `ora_file` | one kind each |
+//! | `png_file`, `jpeg_file`, `tiff_file`, `exr_file`, `hdr_file`, `ora_file` | one kind each |
 //! | `pixels` | what a file holds; checks of size and numbers |
 //! | `colours` | from numbers to light |
 
 mod colours;
 mod exr_file;
+mod hdr_file;
 mod jpeg_file;
 pub mod kind;
 mod ora_file;
@@ -120,6 +121,7 @@ impl Image {
             PictureKind::Jpeg => jpeg_file::read(source, most_bytes),
             PictureKind::Tiff => tiff_file::read(source, most_bytes),
             PictureKind::Exr => exr_file::read(source, most_bytes),
+            PictureKind::Hdr => hdr_file::read(source, most_bytes),
             PictureKind::Ora => ora_file::read(source, most_bytes),
         }?;
         pixels.apply_orientation(turned);
@@ -187,11 +189,13 @@ impl Image {
         let (channels, has_alpha) = self.channels();
         let samples = self.samples(row);
         into.clear();
+        let within = |colour: [f32; 3]| colour.map(|channel| channel.clamp(0.0, 1.0));
         if !has_alpha {
-            into.extend(self.light(samples, channels));
+            into.extend(self.light(samples, channels).into_iter().map(within));
         } else {
             let (samples, shares) = self.parted(samples, channels);
-            let pixels = self.light(samples, channels).zip(shares);
+            let pixels = self.light(samples, channels).into_iter().map(within);
+            let pixels = pixels.zip(shares);
             let over_white = |colour: [f32; 3], share: f32| {
                 colour.map(|channel| share * channel + (1.0 - share))
             };
@@ -199,16 +203,44 @@ impl Image {
         }
     }
 
-    /// Linear sRGB of opaque pixels, 0 to 1.
-    fn light(&self, samples: Samples, channels: usize) -> impl Iterator<Item = [f32; 3]> {
-        let light = match samples {
+    /// Linear sRGB of a row, 0 or more, transparent pixels over black; row 0 is the top.
+    pub fn radiance(&self, row: usize, into: &mut Vec<[f32; 3]>) {
+        let (channels, has_alpha) = self.channels();
+        let samples = self.samples(row);
+        let (samples, shares) = if has_alpha {
+            self.parted(samples, channels)
+        } else {
+            (samples, Vec::new())
+        };
+        let shares = shares.into_iter().chain(std::iter::repeat(1.0));
+        let pixels = self.light(samples, channels).into_iter().zip(shares);
+        into.clear();
+        into.extend(pixels.map(|(colour, share)| colour.map(|v| share * v.max(0.0))));
+    }
+
+    /// The first pixel whose floats are negative or infinite, across and down.
+    #[must_use]
+    pub fn first_without_radiance(&self) -> Option<[usize; 2]> {
+        let (channels, has_alpha) = self.channels();
+        let pixel = channels + usize::from(has_alpha);
+        (0..self.size()[1]).find_map(|row| {
+            let Samples::Floats(values) = self.samples(row) else {
+                return None;
+            };
+            let is_wrong = |value: &f32| !(0.0..f32::INFINITY).contains(value);
+            let place = values.iter().position(is_wrong)?;
+            Some([place / pixel, row])
+        })
+    }
+
+    /// Linear sRGB of opaque pixels, not within 0 to 1 where they are of another gamut or brighter than white.
+    fn light(&self, samples: Samples, channels: usize) -> Vec<[f32; 3]> {
+        match samples {
             Samples::Floats(row) if self.colours.takes_floats() => {
                 self.colours.of_light(&row, channels)
             }
             other => self.colours.of_whole(&other.into_whole(), channels),
-        };
-        let within = |colour: [f32; 3]| colour.map(|channel| channel.clamp(0.0, 1.0));
-        light.into_iter().map(within)
+        }
     }
 
     /// A row without its opacity, of which its colours are independent now, and the opacity.

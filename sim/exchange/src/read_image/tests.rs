@@ -107,14 +107,14 @@ fn what_is_no_picture_says_so() {
         println!("{error}");
         assert!(error.contains(word), "{error}");
     };
-    says(b"", "PNG, JPEG, TIFF, OpenEXR or OpenRaster");
+    says(b"", "PNG, JPEG, TIFF, OpenEXR, Radiance or OpenRaster");
     says(
         b"not a picture at all",
-        "PNG, JPEG, TIFF, OpenEXR or OpenRaster",
+        "PNG, JPEG, TIFF, OpenEXR, Radiance or OpenRaster",
     );
     says(
         b"GIF89a\x01\0\x01\0",
-        "PNG, JPEG, TIFF, OpenEXR or OpenRaster",
+        "PNG, JPEG, TIFF, OpenEXR, Radiance or OpenRaster",
     );
     let mut whole = Cursor::new(Vec::new());
     let pixels = RgbImage::from_fn(50, 50, |x, y| Rgb([x as u8, y as u8, (x * y) as u8]));
@@ -124,7 +124,7 @@ fn what_is_no_picture_says_so() {
     let whole = whole.into_inner();
     says(
         &whole[..whole.len() / 2],
-        "PNG, JPEG, TIFF, OpenEXR or OpenRaster",
+        "PNG, JPEG, TIFF, OpenEXR, Radiance or OpenRaster",
     );
     let mut wide = Cursor::new(Vec::new());
     let pixels = image::GrayImage::new(20_001, 1);

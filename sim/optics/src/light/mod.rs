@@ -8,7 +8,8 @@
 //! ```text
 //! incidence i = V·max(n·l + (1 − V)·w·n·m, 0)/l_z
 //! diffuse   d = (1 − a)·i + a·v + (B(v, c) − v)
-//! room      r = F₀(n_z)·O·(1 − e + e·(2n_z² − 1)),   O = v²
+//! room      r = F₀(n_z)·O·L(s),   O = v²
+//! even      L = 1 − e + e·(2n_z² − 1)
 //! window    t = V·(1 − a)·F(l·b)·max(π·P(s)·G − π·P₀·G, 0)/(4·b_z⁴·l_z)
 //! lit         = E·(d·unlit + w·(r + t))
 //! ```
@@ -16,16 +17,18 @@
 //! The lamp is as broad as a window: V is its share that the relief does not hide ([`shadow`]); a half-hidden lamp
 //! shows its upper half, hence the term with m. A share a of the light is ambient; v is the share of it that a place
 //! receives, and B includes the light reflected by its surroundings, of its own colour c ([`sky`]): hollows of white
-//! paint are bright, those of red paint glow, and no shadow is black. The gloss mirrors a room that is dimmer lower
-//! down, and the lamp through microfacets ([`mod@gloss`]) whose slopes include those that a cell does not resolve. P₀
+//! paint are bright, those of red paint glow, and no shadow is black. The gloss mirrors its surroundings, an even
+//! room that is dimmer lower down or an [`environment`], and the lamp through microfacets ([`mod@gloss`]) whose slopes include those that a cell does not resolve. P₀
 //! is the mirrored lamp in a level surface of the same roughness. The highlights have the colour w of the light, white
 //! to an adapted eye (Baxter 2004, § 7.8.2).
 //!
 //! The films' colour leaves the surface's own reflection k₁ out; here it is added, once, as that of
 //! Fresnel at normal incidence (Schlick 1994). All terms are relative to a flat open surface, where
-//! i = v = B = 1 and r + t = k₁: it looks as a spectrometer reads it, gloss included, times E, wherever the
-//! lamp stands, and does not change when its gloss dries away.
+//! i = v = B = 1 and, in an even room, r + t = k₁: it looks as a spectrometer reads it, gloss included, times E, wherever
+//! the lamp stands, and does not change when its gloss dries away. Before an environment it does: a glossy surface mirrors
+//! the viewer's dim side of the room and looks deep, a matt one scatters all of its light.
 
+pub mod environment;
 mod facet;
 mod fresnel;
 pub mod gloss;
@@ -33,6 +36,9 @@ mod relief;
 pub mod shadow;
 pub mod sky;
 
+use std::sync::Arc;
+
+pub use environment::EnvironmentMap;
 pub use facet::{Facet, Surroundings};
 pub use fresnel::fresnel;
 pub use gloss::gloss;
@@ -57,7 +63,7 @@ const LEAST_ALBEDO: f64 = 1e-3;
 pub const BARE: f64 = 0.98;
 
 /// Parameters of a lamp.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LampSetup {
     /// Toward it, of any length, in the frame of the surface. A lamp lower than [`LOWEST_LAMP`] is raised
     /// to it; a direction that is none means straight above.
@@ -72,6 +78,8 @@ pub struct LampSetup {
     pub softness: f64,
     /// w, the light's own colour, linear.
     pub colour: [f64; 3],
+    /// What the gloss mirrors besides; `None` for an even room.
+    pub environment: Option<Arc<EnvironmentMap>>,
 }
 
 impl Default for LampSetup {
@@ -83,12 +91,13 @@ impl Default for LampSetup {
             relief: 1.0,
             softness: 0.3,
             colour: [1.0; 3],
+            environment: None,
         }
     }
 }
 
-/// A lamp, far away.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A lamp, far away, and what is around.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Lamp {
     /// Unit vector l toward it, in the frame of the surface.
     pub toward: [f32; 3],
@@ -110,6 +119,8 @@ pub struct Lamp {
     pub colour: [f32; 3],
     /// Factor from an unlit colour to an albedo.
     pub albedo: [f32; 3],
+    /// What the gloss mirrors besides; `None` for an even room.
+    pub environment: Option<Arc<EnvironmentMap>>,
 }
 
 impl Lamp {
@@ -151,6 +162,7 @@ impl Lamp {
             softness: softness as f32,
             colour: setup.colour.map(|v| v as f32),
             albedo: setup.colour.map(|v| (1.0 / v.max(LEAST_ALBEDO)) as f32),
+            environment: setup.environment.clone(),
         }
     }
 }
@@ -218,11 +230,15 @@ pub fn lit(spot: &Spot, lamp: &Lamp) -> [f32; 3] {
     let grazing = 1.0 - n[2];
     let twice = grazing * grazing;
     let mirrored = SURFACE + (1.0 - SURFACE) * twice * twice * grazing;
-    let room = mirrored * open * open * (1.0 - DIMMING + DIMMING * (2.0 * n[2] * n[2] - 1.0));
+    let around = match &lamp.environment {
+        None => [1.0 - DIMMING + DIMMING * (2.0 * n[2] * n[2] - 1.0); 3],
+        Some(map) => map.mirrored(slope, (square + spread[0] + spread[2]).sqrt()),
+    };
+    let room = around.map(|light| mirrored * open * open * light);
     [0, 1, 2].map(|i| {
         let albedo = (spot.unlit[i] * lamp.albedo[i]).clamp(0.0, 1.0);
         let diffuse = direct + (sky::bounced(open, albedo) - open);
-        (diffuse * spot.unlit[i] + lamp.colour[i] * (room + window)) * lamp.intensity
+        (diffuse * spot.unlit[i] + lamp.colour[i] * (room[i] + window)) * lamp.intensity
     })
 }
 

@@ -1,10 +1,11 @@
 //! Varnish: it shines alike on all that is dry, is clear, and comes off where no paint lies on it.
 
-use maulstick_painting::LayerError;
+use maulstick_optics::colour::srgb_decode;
 use maulstick_painting::edits::common::convert;
 use maulstick_painting::edits::{Applied, Dry, Finish, Undo, Varnish};
-use maulstick_painting::picture::unlit_picture;
-use maulstick_types::scene::{CANVAS, Light};
+use maulstick_painting::picture::{picture, unlit_picture};
+use maulstick_painting::{LayerError, Painting};
+use maulstick_types::scene::{CANVAS, Environment, Light};
 use maulstick_types::values::ModelName;
 
 use crate::light::{farthest, gloss, painting, stroke, two_strokes};
@@ -52,6 +53,36 @@ fn varnish_shines_alike_on_all_that_is_dry_and_comes_off_whole() {
         painting.apply(Undo { brush: None }).expect("a step");
         assert!(gloss(&mut painting) == after.1, "varnished again");
         painting.apply(Undo { brush: None }).expect("a step");
+    }
+}
+
+/// A viewer sees in a glossy surface the dim wall behind himself, in a matt one the light of the whole room.
+#[test]
+fn varnish_deepens_a_dark_passage_of_a_room_and_not_of_an_even_one() {
+    let mean = |painting: &mut Painting| {
+        let rgb = picture(painting, CANVAS).rgb;
+        let light = rgb.iter().map(|byte| srgb_decode(f64::from(*byte) / 255.0));
+        light.sum::<f64>() / rgb.len() as f64
+    };
+    for (environment, share) in [
+        (Environment::Even, 0.95..1.05),
+        (Environment::Room, 0.4..0.75),
+        (Environment::Window, 0.4..0.75),
+    ] {
+        let mut painting = painting(Light {
+            environment: environment.clone(),
+            ..Light::default()
+        });
+        painting
+            .apply(studio::fill("Bone Black=0.5,Burnt Umber=0.5", 60.0))
+            .expect("laid");
+        painting.apply(Dry::whole(CANVAS)).expect("wet");
+        painting.apply(varnish(Finish::Matt, None)).expect("dry");
+        let matt = mean(&mut painting);
+        painting.apply(varnish(Finish::Gloss, None)).expect("dry");
+        let glossy = mean(&mut painting) / matt;
+        println!("{environment:?}: {glossy:.2} of {matt:.4}");
+        assert!(share.contains(&glossy), "{environment:?}: {glossy}");
     }
 }
 

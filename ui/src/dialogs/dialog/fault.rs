@@ -88,7 +88,7 @@ impl fmt::Display for DialogFault {
                 file = paths::shown(file)
             ),
             Self::NoPicture(file) => tr!(
-                "{file} is no file. Choose a PNG, JPEG, TIFF, OpenEXR or OpenRaster of the list.",
+                "{file} is no file. Choose a PNG, JPEG, TIFF, OpenEXR, Radiance or OpenRaster of the list.",
                 file = paths::shown(file)
             ),
             Self::NoRecording(file) => tr!(

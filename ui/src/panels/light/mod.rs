@@ -2,6 +2,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | `environment_file` | surroundings from a picture |
 //! | `lamp_undo` | changes of the light, as undo takes them |
 //! | `pad` | pad on which the lamp is dragged |
 //! | `sphere` | a ball lit by the lamp |
@@ -12,15 +13,19 @@ use eframe::egui::{CollapsingHeader, TextEdit, TextureHandle, TextureOptions, Ui
 use maulstick_appearance::light::changes_colour;
 use maulstick_optics::cie::ILLUMINANTS;
 use maulstick_painting::edits::Relight;
-use maulstick_types::scene::{Exposure, Intensity, Light, RULES, Relief, Softness, Wavelengths};
+use maulstick_types::scene::{
+    Environment, Exposure, Intensity, Light, RULES, Relief, Softness, Wavelengths,
+};
 use maulstick_types::values::ValueError;
 use maulstick_ui_kit::pending::Pending;
 use maulstick_ui_kit::rows::{Number, Sliders, below, choice, note, row, wrong};
 
+use crate::input::keys::Action;
 use crate::panels::Panel;
 use crate::spectrum_file;
 use crate::widgets::context::{PanelContext, ask};
 
+pub(crate) mod environment_file;
 pub(crate) mod lamp_undo;
 mod pad;
 mod sphere;
@@ -34,6 +39,9 @@ const LIKE: [&str; ILLUMINANTS.len()] = [
     tr_noop!("FL8, broad-band tube"),
     tr_noop!("FL11, three-band tube"),
 ];
+/// Surroundings that need no file, in the order of their names, and those of a picture.
+const AROUND: [&str; Environment::NAMES.len()] =
+    [tr_noop!("Even"), tr_noop!("Studio"), tr_noop!("Window")];
 /// Years of the observers.
 const OBSERVERS: [(&str, u32); 2] = [("1931, 2°", 1931), ("1964, 10°", 1964)];
 
@@ -73,6 +81,7 @@ impl Panel for LightPanel {
         let mut light = before.clone();
         let mut expose = self.lamp(ui, &mut light);
         self.spectrum(ui, &mut light);
+        surroundings(ui, &mut light, work);
         self.sliders.rows(
             ui,
             [
@@ -202,6 +211,26 @@ impl LightPanel {
         if let Some(samples) = change.settled {
             light.samples = samples.clamp(0.0, 1e6) as u32;
         }
+    }
+}
+
+/// What the gloss mirrors besides the lamp.
+fn surroundings(ui: &mut Ui, light: &mut Light, work: &mut PanelContext<'_>) {
+    let picture = tr_noop!("A picture…");
+    let name = light.environment.name();
+    let known = Environment::NAMES.iter().position(|own| *own == name);
+    let known = known.filter(|_| !matches!(light.environment, Environment::Picture { .. }));
+    let shown = known.map_or(name, |place| AROUND[place]);
+    let names = AROUND.into_iter().chain([picture]);
+    let Some(chosen) = choice(ui, tr!("Surroundings"), shown, names) else {
+        return;
+    };
+    match AROUND.iter().position(|own| **own == chosen) {
+        Some(place) => {
+            let named = Environment::named(Environment::NAMES[place]);
+            light.environment = named.unwrap_or_default();
+        }
+        None => work.requests.act(Action::ChooseEnvironment),
     }
 }
 

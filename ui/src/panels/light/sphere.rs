@@ -2,7 +2,7 @@
 
 use eframe::egui::{Color32, ColorImage, Rgba};
 use maulstick_appearance::lamp::exposure_under;
-use maulstick_appearance::light::cast;
+use maulstick_appearance::light::{cast, environment};
 use maulstick_optics::light::{AMBIENT, Lamp, LampSetup};
 use maulstick_types::scene::Light;
 
@@ -11,6 +11,9 @@ pub(super) const SIDE: usize = 256;
 /// Share of the light that the ball throws back, and that its gloss does at most.
 const ALBEDO: f32 = 0.5;
 const GLOSS: f32 = 0.5;
+/// Share of the surroundings that its gloss mirrors, and its roughness.
+const SHEEN: f32 = 0.06;
+const ROUGH: f32 = 0.15;
 /// Exponent of its highlight.
 const SHARPNESS: i32 = 48;
 
@@ -23,6 +26,7 @@ pub(super) fn draw(light: &Light) -> ColorImage {
         relief: light.relief,
         softness: light.softness,
         colour: cast(light),
+        environment: environment(light),
     });
     let radius = 0.5 * SIDE as f32;
     let pixel = |place: usize| {
@@ -49,8 +53,13 @@ fn lit(lamp: &Lamp, normal: [f32; 3]) -> [f32; 3] {
     let length = (2.0 * (1.0 + z)).sqrt();
     let half = [x / length, y / length, (1.0 + z) / length];
     let gleam = GLOSS * dot(&half).max(0.0).powi(SHARPNESS);
-    let value = lamp.intensity * (ALBEDO * diffuse + gleam);
-    lamp.colour.map(|own| (value * own).clamp(0.0, 1.0))
+    let slope = [0, 1].map(|i| -normal[i] / normal[2].max(1e-3));
+    let around = lamp.environment.as_ref();
+    let around = around.map_or([0.0; 3], |map| map.mirrored(slope, ROUGH));
+    [0, 1, 2].map(|i| {
+        let value = ALBEDO * diffuse + gleam + SHEEN * around[i];
+        (lamp.intensity * value * lamp.colour[i]).clamp(0.0, 1.0)
+    })
 }
 
 #[cfg(test)]

@@ -108,6 +108,24 @@ fn another_spectrum_is_exposed_anew_and_an_exposure_is_chosen_by_a_button() {
 }
 
 #[test]
+fn surroundings_are_chosen_and_a_picture_of_them_is_asked_for() {
+    let mut harness = panel();
+    for entry in ["Studio", "A picture…"] {
+        harness
+            .get_by_role_and_label(Role::ComboBox, "Surroundings")
+            .click();
+        harness.run();
+        harness.get_by_label(entry).click();
+        harness.run();
+    }
+    let acts = harness.state_mut().requests.take_acts();
+    assert_eq!(acts, [Action::ChooseEnvironment]);
+    let lights = lights(&mut harness);
+    let around: Vec<_> = lights.iter().map(|(light, _)| &light.environment).collect();
+    assert_eq!(around, [&Environment::Room]);
+}
+
+#[test]
 fn a_spectrum_is_read_from_a_file_or_told_with_its_line() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("candle.csv");

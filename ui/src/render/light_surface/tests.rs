@@ -1,9 +1,10 @@
 use half::f16;
 use maulstick_optics::colour::RgbSpace;
-use maulstick_optics::light::{Facet, HeightField, LampSetup, Spot, lit};
+use maulstick_optics::light::{EnvironmentMap, Facet, HeightField, LampSetup, Spot, lit};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;
 
+use super::environment::EnvironmentTexture;
 use super::*;
 use crate::render::gpu::testing::{gpu, read};
 
@@ -78,6 +79,7 @@ impl Rough {
                 .write_texture(texture.as_image_copy(), &bytes, layout, texture.size());
         }
         let uniform = gpu.uniform::<LampUniform>("lamp");
+        let around = lamp.environment.as_ref();
         let lamp = LampUniform::new(lamp, &Surroundings::new(lamp, CELL_M), CELL_M);
         gpu.queue
             .write_buffer(&uniform, 0, bytemuck::bytes_of(&lamp));
@@ -89,7 +91,10 @@ impl Rough {
         let within = WindowUniform::new(&held);
         gpu.queue
             .write_buffer(&window, 0, bytemuck::bytes_of(&within));
-        let bound = pass.bind(&gpu, [&uniform, &window], &view(&colours), &view(&heights));
+        let mut environment = EnvironmentTexture::new(&gpu);
+        environment.take(&gpu, around);
+        let textures = [view(&colours), view(&heights), environment.view()];
+        let bound = pass.bind(&gpu, [&uniform, &window], textures.each_ref());
         let target = texture(LIT, output);
         let whole = CellRect {
             from: [0; 2],
@@ -131,6 +136,7 @@ fn lamp(toward: [f64; 3], exposure: f64, softness: f64) -> Lamp {
         relief: 1.3,
         softness,
         colour: [1.3, 0.9, 0.4],
+        environment: None,
     })
 }
 
@@ -186,6 +192,51 @@ fn the_shader_lights_as_the_export_does() {
             faults.iter().all(|fault| *fault > TOLERANCE),
             "a fault would pass: {faults:?}"
         );
+    }
+}
+
+#[test]
+fn the_shader_mirrors_an_environment_as_the_export_does() {
+    let rough = Rough::new(8);
+    let gamut = Gamut::new(GamutMapping::Clamp, &RgbSpace::Srgb.from_working());
+    let striped = EnvironmentMap::of(|[x, y, z]| {
+        let stripe = |v: f64, n: f64| (v * n).rem_euclid(1.0);
+        [stripe(x, 3.0), stripe(y, 2.0), z]
+    });
+    let striped = std::sync::Arc::new(striped.expect("light"));
+    for map in [EnvironmentMap::room(), striped] {
+        let within = |environment| Lamp {
+            environment,
+            intensity: 0.7,
+            ..lamp([-0.5, 0.5, 0.7], 1.0, 0.1)
+        };
+        let own = within(Some(std::sync::Arc::clone(&map)));
+        let shown = rough.on_device(&own, &gamut, [37, 5]);
+        let off = farthest(&shown, &rough.expected(&own, &gamut));
+        println!("greatest difference {off:.1e}");
+        assert!(off < TOLERANCE, "{off}");
+        let mirror = map
+            .to_bytes()
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .rev()
+            .flatten()
+            .copied()
+            .collect::<Vec<_>>();
+        let mirror = EnvironmentMap::from_bytes(&mirror).map(std::sync::Arc::new);
+        let sharp = |facet: Facet| Facet {
+            spread: [0.0; 3],
+            ..facet
+        };
+        let faults = [
+            rough.expected(&within(None), &gamut),
+            rough.expected(&within(Some(EnvironmentMap::window())), &gamut),
+            rough.expected(&within(mirror), &gamut),
+            rough.faulty(&own, &gamut, sharp),
+        ];
+        let faults = faults.map(|fault| farthest(&shown, &fault));
+        assert!(faults.iter().all(|fault| *fault > TOLERANCE), "{faults:?}");
     }
 }
 

@@ -28,6 +28,8 @@ struct Lamp {
     // The light's own colour, and what makes an albedo of an unlit one.
     colour: vec3<f32>,
     albedo: vec3<f32>,
+    // 1 where the gloss mirrors the environment map, 0 in an even room.
+    mapped: f32,
     // The two cells of each place on the way to the lamp; share of the second, and the run to it.
     cells: array<vec4<i32>, TAPS>,
     runs: array<vec4<f32>, TAPS>,
@@ -63,6 +65,9 @@ override surface: f32;
 override dimming: f32;
 // Roughness of the glossiest film, and of the most matte ground.
 override smoothest: f32;
+// Roughness of the sharpest level of an environment map, and its steps from texel to texel.
+override sharpest: f32;
+override steps: u32;
 override roughest: f32;
 // Halvings of the search for the gamut's edge. No uniform: a loop to one makes some drivers compile the shader again
 // for every draw.
@@ -82,6 +87,8 @@ override soft: bool;
 @group(0) @binding(2) var heights: texture_2d<f32>;
 @group(0) @binding(3) var<uniform> gamut: Gamut;
 @group(0) @binding(4) var<uniform> window: Window;
+// Levels of an environment map above each other.
+@group(0) @binding(5) var environment: texture_2d<f32>;
 
 @vertex
 fn cover(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
@@ -201,6 +208,34 @@ fn density(own: f32, covariance: vec3<f32>, off: vec2<f32>) -> f32 {
     return 1.0 / (sqrt(determinant) * tail * tail);
 }
 
+// Bilinear interpolation of a level of the environment map.
+fn between(level: u32, toward: vec2<f32>) -> vec3<f32> {
+    let side = steps >> level;
+    let at = clamp((0.5 * toward + 0.5) * f32(side), vec2<f32>(0.0), vec2<f32>(f32(side)));
+    let low = min(vec2<u32>(at), vec2<u32>(side - 1u));
+    let share = at - vec2<f32>(low);
+    // Below it lie the sharper levels, each of one row more than it has steps.
+    let first = low + vec2<u32>(0u, 2u * (steps - side) + level);
+    let a = textureLoad(environment, first, 0).rgb;
+    let b = textureLoad(environment, first + vec2<u32>(1u, 0u), 0).rgb;
+    let c = textureLoad(environment, first + vec2<u32>(0u, 1u), 0).rgb;
+    let d = textureLoad(environment, first + vec2<u32>(1u, 1u), 0).rgb;
+    let lower = a + (b - a) * share.x;
+    let upper = c + (d - c) * share.x;
+    return lower + (upper - lower) * share.y;
+}
+
+// Radiance that facets about a slope mirror to a viewer straight above.
+fn mirrored_map(rise: vec2<f32>, rough: f32) -> vec3<f32> {
+    let toward = -rise / max(sqrt(dot(rise, rise)), 1.0);
+    let times = rough / sharpest;
+    let rougher = select(1.0 + 0.25 * times, 0.5 * times, times < 4.0);
+    let place = clamp(select(rougher, times - 1.0, times < 2.0), 0.0, 3.0);
+    let level = min(u32(place), 2u);
+    let sharp = between(level, toward);
+    return sharp + (between(level + 1u, toward) - sharp) * (place - f32(level));
+}
+
 fn lit(spot: Spot, unlit: vec3<f32>, gloss: f32) -> vec3<f32> {
     let rise = slope(spot) * lamp.relief;
     let n = vec3<f32>(-rise, 1.0) / sqrt(dot(rise, rise) + 1.0);
@@ -220,7 +255,11 @@ fn lit(spot: Spot, unlit: vec3<f32>, gloss: f32) -> vec3<f32> {
     let grazing = 1.0 - n.z;
     let twice = grazing * grazing;
     let mirrored = surface + (1.0 - surface) * twice * twice * grazing;
-    let room = mirrored * open * open * (1.0 - dimming + dimming * (2.0 * n.z * n.z - 1.0));
+    var around = vec3<f32>(1.0 - dimming + dimming * (2.0 * n.z * n.z - 1.0));
+    if lamp.mapped > 0.0 {
+        around = mirrored_map(rise, sqrt(rough * rough + hidden.x + hidden.z));
+    }
+    let room = mirrored * open * open * around;
     let albedo = clamp(unlit * lamp.albedo, vec3<f32>(0.0), vec3<f32>(1.0));
     let diffuse = direct + (bounced(open, albedo) - open);
     return (diffuse * unlit + lamp.colour * (room + pane)) * lamp.intensity;

@@ -3,7 +3,7 @@
 use maulstick_types::EditFields;
 #[cfg(feature = "cli")]
 use maulstick_types::scene;
-use maulstick_types::scene::{Light, LightError};
+use maulstick_types::scene::{Environment, Light, LightError};
 #[cfg(feature = "cli")]
 use maulstick_types::values::Quantity as _;
 use maulstick_types::values::ValueError;
@@ -54,6 +54,9 @@ pub struct LightChange {
     /// Softness of shadows
     #[cfg_attr(feature = "cli", arg(long, help = scene::Softness::option_help(), allow_negative_numbers = true))]
     pub softness: Option<f64>,
+    /// Surroundings that gloss mirrors: even, room, window, or a picture by latitude and longitude, twice as wide as high
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME|FILE"))]
+    pub environment: Option<String>,
     /// CIE observer
     #[cfg_attr(feature = "cli", arg(long, value_name = "1931|1964"))]
     pub observer: Option<u32>,
@@ -79,13 +82,14 @@ pub enum Exposure {
 
 impl LightChange {
     /// Names of its fields.
-    pub const KEYS: [&'static str; 10] = [
+    pub const KEYS: [&'static str; 11] = [
         "illuminant",
         "direction",
         "intensity",
         "exposure",
         "relief",
         "softness",
+        "environment",
         "observer",
         "rule",
         "samples",
@@ -100,7 +104,8 @@ impl<'de> Deserialize<'de> for Exposure {
 }
 
 impl LightChange {
-    /// The light after the change; `illuminant` is its named spectrum, read by a caller with access to files.
+    /// The light after the change; `illuminant` and `environment` are those that it names, read by a caller with access
+    /// to files.
     ///
     /// # Errors
     /// [`LightError`] for a light out of range.
@@ -108,11 +113,13 @@ impl LightChange {
         &self,
         light: &Light,
         illuminant: Option<(String, Vec<f64>)>,
+        environment: Option<Environment>,
     ) -> Result<Light, LightError> {
         let mut light = light.clone();
         if let Some((name, spectrum)) = illuminant {
             (light.illuminant, light.spectrum) = (name, spectrum);
         }
+        light.environment = environment.unwrap_or(light.environment);
         light.direction = self.direction.unwrap_or(light.direction);
         let exposure = match self.exposure {
             Some(Exposure::Factor(factor)) => Some(factor),
@@ -206,7 +213,7 @@ impl Form for Relight {
             ..LightChange::default()
         };
         Ok(Self {
-            light: change.on(&Light::default(), None)?,
+            light: change.on(&Light::default(), None, None)?,
             expose: false,
         })
     }
