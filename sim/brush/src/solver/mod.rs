@@ -7,11 +7,12 @@ mod line_search;
 mod newton;
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
+use maulstick_num::geometry::shortest_arc;
 
 pub use self::contact_constraint::{ContactConstraint, HalfSpace};
 use crate::blocks::BlockFactor;
 use crate::energy::bond::Bond;
-use crate::energy::damping::Damping;
+use crate::energy::damping::follow;
 use crate::energy::friction::Anisotropy;
 use crate::energy::spring::OfCosine;
 use crate::qp::DualSolver;
@@ -52,6 +53,8 @@ pub struct Settings {
     pub epsilon_m: f64,
     /// Stiffness against neighbours that come nearer than at rest, N/m.
     pub repulsion_n_m: f64,
+    /// Factor on the inner friction of the joints.
+    pub damping: f64,
     /// Direction along the surface in which an upright spine gives way, a unit vector.
     pub yields: DVec2,
     /// Greatest number of Newton steps.
@@ -71,6 +74,7 @@ impl Settings {
             anisotropy: Anisotropy::default(),
             epsilon_m: 8e-5 * length_m,
             repulsion_n_m: 0.0,
+            damping: 1.0,
             yields: YIELDS,
             max_iterations: 60,
             tolerance: 1e-9,
@@ -142,8 +146,8 @@ impl Solution {
 #[derive(Clone, Debug, Default)]
 pub struct Solver {
     before: Vec<DVec3>,
-    /// Chord of each joint at the beginning of the step.
-    chords: Vec<DVec3>,
+    /// The rotation of each joint that takes the segment before it to its anchor, fixed in a step.
+    turns: Vec<DMat3>,
     /// Rest direction of each segment if the one before points along the base; empty if that is straight.
     rest: Vec<DVec3>,
     damped: bool,
@@ -166,7 +170,7 @@ struct Point {
     /// Ends of the segments, m.
     ends: Vec<DVec3>,
     bends: Vec<OfCosine>,
-    dampers: Vec<Damping>,
+    dampers: Vec<Damper>,
     /// Force and stiffness of the loads on each segment's end.
     pulls: Vec<(DVec3, DMat3)>,
     /// Derivative of the energy by each direction, in space.
@@ -175,6 +179,16 @@ struct Point {
     lagrangian: Vec<DVec3>,
     /// Gap of each constraint, m; negative where its joint penetrates.
     gaps: Vec<f64>,
+}
+
+/// The inner friction of a joint.
+#[derive(Clone, Copy, Debug)]
+struct Damper {
+    energy: OfCosine,
+    /// Direction of the anchor: the derivative of the cosine by the segment.
+    anchor: DVec3,
+    /// Derivative of the cosine by the segment before.
+    by_before: DVec3,
 }
 
 /// A basis of the plane in which the direction of a segment can change.
@@ -310,7 +324,18 @@ impl Solver {
                 settings,
             );
         }
+        self.move_anchors(shape);
         solution
+    }
+
+    /// Moves the anchors of a solved spine along.
+    fn move_anchors(&self, shape: &mut SpineShape) {
+        let mut before = shape.base();
+        let segments = shape.directions.iter().zip(&mut shape.anchors);
+        for ((d, anchor), turn) in segments.zip(&self.turns) {
+            *anchor = follow(*d, *turn * before);
+            before = *d;
+        }
     }
 
     /// Report of a shape that is reused because no better one was found.
@@ -394,15 +419,16 @@ impl Solver {
         (energy, &self.point.slopes)
     }
 
-    /// Stores the initial shape for the energy of damping, and the rest shape of the spine.
+    /// Stores how the anchors lie to the segments before them, and the rest shape of the spine.
     pub fn begin(&mut self, spine: &Spine, shape: &SpineShape) {
-        let mut above = shape.base();
-        self.chords.clear();
-        for d in &shape.directions {
-            self.chords.push(*d - above);
-            above = *d;
-        }
         self.damped = spine.damping.iter().any(|d| *d > 0.0);
+        self.turns.clear();
+        if self.damped {
+            let above = [shape.base()].into_iter().chain(shape.directions.iter().copied());
+            let turns = above.zip(&shape.anchors);
+            let turns = turns.map(|(above, anchor)| DMat3::from_quat(shortest_arc(above, *anchor)));
+            self.turns.extend(turns);
+        }
         self.rest.clear();
         self.rest
             .extend(spine.rest.iter().map(|rest| shape.frame * *rest));
