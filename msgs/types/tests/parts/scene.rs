@@ -2,7 +2,7 @@
 
 use maulstick_types::Mixture;
 use maulstick_types::scene::{
-    Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
+    BrushSet, Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
 };
 
 use super::{handling, pose};
@@ -81,5 +81,10 @@ pub(crate) fn scene() -> Scene {
             here: true,
         }],
         handlings: vec![handling()],
+        sets: vec![BrushSet {
+            brush: "main".into(),
+            given: 2,
+            angles_rad: vec![[0.01, -0.02]],
+        }],
     }
 }

@@ -1,18 +1,18 @@
 //! The constrained minimum of a spine's energy (Baxter 2004, eq. 3.1 and 3.5), by Newton steps with
 //! exact second derivatives, each a small quadratic program.
 
+mod anchors;
 mod assembly;
 mod contact_constraint;
 mod line_search;
 mod newton;
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
-use maulstick_num::geometry::shortest_arc;
 
+use self::anchors::Damper;
 pub use self::contact_constraint::{ContactConstraint, HalfSpace};
 use crate::blocks::BlockFactor;
 use crate::energy::bond::Bond;
-use crate::energy::damping::follow;
 use crate::energy::friction::Anisotropy;
 use crate::energy::spring::OfCosine;
 use crate::qp::DualSolver;
@@ -181,16 +181,6 @@ struct Point {
     gaps: Vec<f64>,
 }
 
-/// The inner friction of a joint.
-#[derive(Clone, Copy, Debug)]
-struct Damper {
-    energy: OfCosine,
-    /// Direction of the anchor: the derivative of the cosine by the segment.
-    anchor: DVec3,
-    /// Derivative of the cosine by the segment before.
-    by_before: DVec3,
-}
-
 /// A basis of the plane in which the direction of a segment can change.
 #[derive(Clone, Copy, Debug)]
 struct Tangents(DVec3, DVec3);
@@ -328,16 +318,6 @@ impl Solver {
         solution
     }
 
-    /// Moves the anchors of a solved spine along.
-    fn move_anchors(&self, shape: &mut SpineShape) {
-        let mut before = shape.base();
-        let segments = shape.directions.iter().zip(&mut shape.anchors);
-        for ((d, anchor), turn) in segments.zip(&self.turns) {
-            *anchor = follow(*d, *turn * before);
-            before = *d;
-        }
-    }
-
     /// Report of a shape that is reused because no better one was found.
     fn kept_shape(
         &mut self,
@@ -422,13 +402,7 @@ impl Solver {
     /// Stores how the anchors lie to the segments before them, and the rest shape of the spine.
     pub fn begin(&mut self, spine: &Spine, shape: &SpineShape) {
         self.damped = spine.damping.iter().any(|d| *d > 0.0);
-        self.turns.clear();
-        if self.damped {
-            let above = [shape.base()].into_iter().chain(shape.directions.iter().copied());
-            let turns = above.zip(&shape.anchors);
-            let turns = turns.map(|(above, anchor)| DMat3::from_quat(shortest_arc(above, *anchor)));
-            self.turns.extend(turns);
-        }
+        self.turn_to_anchors(shape);
         self.rest.clear();
         self.rest
             .extend(spine.rest.iter().map(|rest| shape.frame * *rest));

@@ -178,11 +178,9 @@ impl SpineShape {
     pub fn exact_angles(&self) -> impl Iterator<Item = [f64; 2]> {
         let mut frame = self.frame * BRUSH_TO_SPINE;
         self.directions.iter().map(move |direction| {
-            let local = frame.conjugate() * *direction;
-            let theta = std::f64::consts::FRAC_PI_2 - acos(-local.y);
-            let phi = atan2(local.x, local.z);
-            frame *= bend([theta, phi]);
-            [theta, phi]
+            let angles = angles_of(frame.conjugate() * *direction);
+            frame *= bend(angles);
+            angles
         })
     }
 
@@ -214,6 +212,22 @@ impl SpineShape {
             directions,
         }
     }
+}
+
+/// θ and φ of a direction in the frame of the brush, rad.
+pub(super) fn angles_in_brush(direction: DVec3) -> [f64; 2] {
+    angles_of(BRUSH_TO_SPINE.conjugate() * direction)
+}
+
+/// The direction in the frame of the brush of given angles.
+pub(super) fn direction_in_brush(angles: [f64; 2]) -> DVec3 {
+    BRUSH_TO_SPINE * bend(angles) * DVec3::Z
+}
+
+/// θ and φ of a direction in a spine's frame.
+fn angles_of(local: DVec3) -> [f64; 2] {
+    let theta = std::f64::consts::FRAC_PI_2 - acos(-local.y);
+    [theta, atan2(local.x, local.z)]
 }
 
 /// R_y(φ)·R_x(θ).
