@@ -3,7 +3,6 @@
 //! Number of texels, number of slots, steps (two numbers, the low word first); the films of all paints; then for each
 //! slot its number, its films and its paint inside; then the angles of the permanent set as floats, if there are any.
 
-use maulstick_brush::file::check::{MOST_IN_ALL, MOST_JOINTS};
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_model::brush::traits::{STRIPS_MOST, TEXELS_PER_STRIP};
@@ -13,8 +12,8 @@ use super::defect::Defect;
 /// Greatest number of texels of a head, for the greatest number of strips of a brush.
 const TEXELS_MAX: usize = STRIPS_MOST * TEXELS_PER_STRIP;
 
-/// Angles of a permanent set at most, in pairs: of all joints and of the core, and of their anchors.
-const SET_MAX: usize = 2 * (MOST_IN_ALL + MOST_JOINTS);
+/// Pairs of angles of a permanent set at most: more than a head has joints, with its core and their anchors.
+const SET_MAX: usize = 2048;
 
 /// A load as bytes.
 ///

@@ -8,7 +8,7 @@ use crate::edits::{Applied, Form, PaintingEdit, StepForm};
 use crate::error::EditError;
 use crate::painting::Painting;
 
-/// Clean a brush, and bring it back into shape
+/// Clean a brush
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Clean {

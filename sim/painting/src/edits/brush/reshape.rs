@@ -7,7 +7,7 @@ use crate::edits::{Applied, Form, PaintingEdit, StepForm};
 use crate::error::EditError;
 use crate::painting::Painting;
 
-/// Bring a bent brush back into shape with the fingers
+/// Bring a bent brush back into shape
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Reshape {
