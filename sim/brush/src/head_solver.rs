@@ -5,11 +5,11 @@ use maulstick_num::geometry::Rigid;
 use maulstick_types::brush::Contact;
 
 use crate::core_spine;
-use crate::permanent_set;
 use crate::desk::Obstacle;
 use crate::energy::bond::Bond;
 use crate::energy::friction::Anisotropy;
 use crate::file::BrushFile;
+use crate::permanent_set;
 use crate::solver::{ContactConstraint, Neighbour, Settings, Solver};
 use crate::spine::SpineShape;
 use crate::spine_layout::SpineLayout;
@@ -114,7 +114,9 @@ impl SolvedHead {
 
     /// Heights of all joints' ends, m.
     pub(crate) fn heights(&self) -> impl Iterator<Item = f64> {
-        self.spines.iter().flat_map(|spine| spine.ends.iter().map(|end| end.z))
+        self.spines
+            .iter()
+            .flat_map(|spine| spine.ends.iter().map(|end| end.z))
     }
 
     /// Slides a head along the surface to `brush` with its bend and contacts, without dragging.
@@ -162,7 +164,9 @@ impl SolvedHead {
 
     /// Places of the joints that touch the surface, m.
     pub(crate) fn touching(&self) -> impl Iterator<Item = DVec3> {
-        let touching = self.on_surface().filter(|(_, constraint)| constraint.touches());
+        let touching = self
+            .on_surface()
+            .filter(|(_, constraint)| constraint.touches());
         touching.map(|(spine, constraint)| self.spines[spine].ends[constraint.joint])
     }
 

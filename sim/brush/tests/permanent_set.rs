@@ -162,8 +162,14 @@ fn left_after(more: u32, forgets: bool) -> f64 {
 #[test]
 fn a_bend_does_not_depend_on_the_number_of_solves() {
     let (few, many) = (left_after(1, false), left_after(400, false));
-    assert!(few > 0.01 && (many / few - 1.0).abs() < 1e-6, "{few} {many}");
-    assert!(left_after(400, true) < 0.5 * few, "a viscous damper creeps back");
+    assert!(
+        few > 0.01 && (many / few - 1.0).abs() < 1e-6,
+        "{few} {many}"
+    );
+    assert!(
+        left_after(400, true) < 0.5 * few,
+        "a viscous damper creeps back"
+    );
     let bend = |stride_m: f64| {
         let mut hand = Hand::new("flat");
         hand.stride_m = stride_m;
@@ -256,7 +262,10 @@ fn a_bend_goes_in_the_cleaner_by_order_and_with_another_brush() {
     assert!(hand.bend(&unbent) < 1e-3);
     hand.model.take_set(Some(&order(2, &lifted.angles_rad)));
     let again = hand.hold(hand.at);
-    assert!((hand.bend(&again) - bent).abs() < 1e-3, "the bend of an undone stroke");
+    assert!(
+        (hand.bend(&again) - bent).abs() < 1e-3,
+        "the bend of an undone stroke"
+    );
     // From the canvas into the jar.
     hand.go([0.03, 4e-3]);
     hand.go([0.11, -0.06]);

@@ -249,7 +249,10 @@ fn two() -> f64 {
     2.0
 }
 
-#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+#[allow(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde passes a reference"
+)]
 fn is_two(value: &f64) -> bool {
     *value == two()
 }

@@ -392,6 +392,9 @@ impl BrushModel {
             converged = self.bend(tracked, &brush, plane);
         }
         converged &= self.reshape(tracked, &brush, plane);
+        if touched && !tracked.head.touches() {
+            converged = self.settle(tracked, &brush, plane);
+        }
         let contacts = tracked.head.contacts();
         let stroke = if contacts.is_empty() {
             0

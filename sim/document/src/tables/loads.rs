@@ -65,7 +65,14 @@ pub fn decode(bytes: &[u8]) -> Result<BrushLoad, Defect> {
     let mut load = BrushLoad::of_planes(steps, films, planes).ok_or(Defect::Load)?;
     let (set, odd) = rest.as_chunks::<2>();
     load.set = set.iter().map(|pair| pair.map(f32::from_bits)).collect();
-    if !odd.is_empty() || load.set.len() > SET_MAX || !load.set.as_flattened().iter().all(|angle| angle.is_finite()) {
+    if !odd.is_empty()
+        || load.set.len() > SET_MAX
+        || !load
+            .set
+            .as_flattened()
+            .iter()
+            .all(|angle| angle.is_finite())
+    {
         return Err(Defect::Load);
     }
     Ok(load)

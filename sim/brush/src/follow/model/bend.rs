@@ -10,6 +10,9 @@ use super::{BrushModel, TrackedBrush};
 use crate::desk::{Obstacle, Plane};
 use crate::head_solver::SolvedHead;
 
+/// Solves of a head that was just lifted: neighbouring spines that were apart come to rest against each other.
+const SETTLING: usize = 8;
+
 impl BrushModel {
     /// Sets the wetness of the head: 0 as in its file, 1 soaked, where its hairs stick together most and drag on each
     /// other.
@@ -55,7 +58,18 @@ impl BrushModel {
             return true;
         };
         tracked.head = SolvedHead::bent(&self.tuft, brush, &set);
-        self.bend(tracked, brush, plane)
+        self.settle(tracked, brush, plane)
+    }
+
+    /// Bends the spines of a head in the air until they agree; true if all converged.
+    pub(super) fn settle(
+        &mut self,
+        tracked: &mut TrackedBrush,
+        brush: &Rigid,
+        plane: &Plane,
+    ) -> bool {
+        let passes = (0..SETTLING).map(|_| self.bend(tracked, brush, plane));
+        passes.last().unwrap_or(true)
     }
 
     /// Notes the permanent set of a head in the air.
@@ -76,7 +90,9 @@ impl BrushModel {
             brush.translation.z += 2.0 * self.file.length_m();
             let (room, ground) = (&mut self.solver, [Obstacle::ground()]);
             let (tuft, settings) = (&self.tuft, &self.settings);
-            tracked.head.solve(room, tuft, &brush, &ground, settings);
+            for _ in 0..SETTLING {
+                tracked.head.solve(room, tuft, &brush, &ground, settings);
+            }
         }
         self.note_set(&tracked);
     }
