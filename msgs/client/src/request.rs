@@ -6,7 +6,7 @@ use maulstick_types::haptics::ForceOrder;
 /// The edit that moves a surface.
 const PLACE: &str = "place";
 /// Edits of a brush, its paint and its use.
-const OF_A_BRUSH: [&str; 5] = ["tune", "handle", "load", "load_from", "clean"];
+const OF_A_BRUSH: [&str; 6] = ["tune", "handle", "load", "load_from", "clean", "reshape"];
 /// Edits that set a value, of which the newest counts, and the field that says whose.
 const SETTINGS: [(&str, &str); 5] = [
     (PLACE, "surface"),

@@ -49,7 +49,9 @@ wire_struct! {
         pub pose: Pose,
         /// Zoom of the surface as it was then: it may have changed until this is painted.
         pub zoom: f64,
-        /// θ and φ of each joint, rad, spine after spine.
+        /// θ and φ of each joint, rad, spine after spine. Of a head in the air that keeps a bend those of its core
+        /// follow, and then, for all spines and the core, those of the directions to which friction draws the segments,
+        /// each as seen from the segment before.
         pub angles_rad: Vec<[f32; 2]>,
         /// Joints in contact.
         pub contacts: Vec<Contact>,

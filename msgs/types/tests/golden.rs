@@ -15,7 +15,7 @@ use maulstick_types::paint::{
     StepName, ThumbnailRequest,
 };
 use maulstick_types::scene::{
-    Environment, Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, WellKind,
+    BrushSet, Environment, Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, WellKind,
 };
 use maulstick_types::stylus::{StylusInfo, StylusPose, TakeEnd, TakeStatus};
 use maulstick_types::window::PendingOrders;
@@ -313,6 +313,11 @@ fn scene() -> [String; 1] {
             here: true,
         }],
         handlings: vec![handling()],
+        sets: vec![BrushSet {
+            brush: "main".into(),
+            given: 2,
+            angles_rad: vec![[0.01, -0.02]],
+        }],
     })]
 }
 

@@ -9,6 +9,7 @@ use crate::desk::Obstacle;
 use crate::energy::bond::Bond;
 use crate::energy::friction::Anisotropy;
 use crate::file::BrushFile;
+use crate::permanent_set;
 use crate::solver::{ContactConstraint, Neighbour, Settings, Solver};
 use crate::spine::SpineShape;
 use crate::spine_layout::SpineLayout;
@@ -73,11 +74,56 @@ impl SolvedHead {
         }
     }
 
+    /// A head in the air with the bend `set` that its joints hold, as [`set`](Self::set) gives it; at rest where that
+    /// does not fit.
+    #[must_use]
+    pub fn bent(tuft: &SpineLayout, brush: &Rigid, set: &[[f32; 2]]) -> Self {
+        let mut head = Self::at_rest(tuft, brush);
+        let joints = head.angles().len() + head.core.ends.len();
+        if set.len() == 2 * joints {
+            let (mut angles, mut anchors) = set.split_at(joints);
+            let roots = tuft.roots.iter().chain([&tuft.core.root]);
+            for (spine, root) in head.all_mut().zip(roots) {
+                let (own, held);
+                (own, angles) = angles.split_at(spine.ends.len());
+                (held, anchors) = anchors.split_at(spine.ends.len());
+                permanent_set::bend(&mut spine.shape, own, held);
+                spine.shape.joints(&root.spine, &mut spine.ends);
+            }
+        }
+        head
+    }
+
+    /// The bend that its joints hold in the air: θ and φ of all spines and of the core, and then their
+    /// [anchors](permanent_set::anchors). Of a tuft without inner friction the angles of the spines alone.
+    #[must_use]
+    pub fn set(&self, tuft: &SpineLayout) -> Vec<[f32; 2]> {
+        let mut set = self.angles();
+        if tuft.is_plastic() {
+            self.core.shape.angles(&mut set);
+            let spines = self.spines.iter().chain([&self.core]);
+            set.extend(spines.flat_map(|spine| permanent_set::anchors(&spine.shape)));
+        }
+        set
+    }
+
+    /// All spines, and the core.
+    fn all_mut(&mut self) -> impl Iterator<Item = &mut SolvedSpine> {
+        self.spines.iter_mut().chain([&mut self.core])
+    }
+
+    /// Heights of all joints' ends, m.
+    pub(crate) fn heights(&self) -> impl Iterator<Item = f64> {
+        self.spines
+            .iter()
+            .flat_map(|spine| spine.ends.iter().map(|end| end.z))
+    }
+
     /// Slides a head along the surface to `brush` with its bend and contacts, without dragging.
     pub fn slide(&mut self, tuft: &SpineLayout, brush: &Rigid) {
         let to = tuft.core.root.frame(brush).translation;
         let by = (to - self.core.shape.root).with_z(0.0);
-        for spine in self.spines.iter_mut().chain([&mut self.core]) {
+        for spine in self.all_mut() {
             spine.shape.root += by;
             spine.ends.iter_mut().for_each(|end| *end += by);
             let anchors = spine
@@ -114,6 +160,14 @@ impl SolvedHead {
                 force_n: constraint.force_n as f32,
             })
             .collect()
+    }
+
+    /// Places of the joints that touch the surface, m.
+    pub(crate) fn touching(&self) -> impl Iterator<Item = DVec3> {
+        let touching = self
+            .on_surface()
+            .filter(|(_, constraint)| constraint.touches());
+        touching.map(|(spine, constraint)| self.spines[spine].ends[constraint.joint])
     }
 
     fn on_surface(&self) -> impl Iterator<Item = (usize, &ContactConstraint)> {

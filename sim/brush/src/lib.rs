@@ -107,5 +107,5 @@ pub use solver::{Solution, Solver};
 pub use spine::{Spine, SpineShape};
 pub use spine_layout::SpineLayout;
 pub use spine_root::SpineRoot;
-pub use spines::{core_spine, single_spine, spine, spine_layout, spine_root};
+pub use spines::{core_spine, permanent_set, single_spine, spine, spine_layout, spine_root};
 pub use surfaces::{desk, palette_place, placement};

@@ -152,6 +152,7 @@ impl PaintingSetup {
             layers: Vec::new(),
             versions: Vec::new(),
             handlings: Vec::new(),
+            sets: Vec::new(),
         }
     }
 }

@@ -148,6 +148,7 @@ impl Offline {
         self.model.set_scene(scene);
         self.model.tune(scene.tuning(&self.brush));
         self.model.soak(scene.wetness(&self.brush));
+        self.model.take_set(scene.set(&self.brush));
     }
 
     /// Lets `ticks` sixtieths of a second pass without painting. `each` is called after each second during a drying;

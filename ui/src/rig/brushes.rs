@@ -222,11 +222,11 @@ impl BrushTracker {
             let name = self.topics.middle(&state.key).unwrap_or_default();
             let known = self.known.get_mut(name);
             if let (Some(known), Some(solve)) = (known, state.message.solves.last())
-                && known.head.fits(solve.angles_rad.len())
+                && let Some(angles) = known.head.angles(solve)
             {
                 known.device = Some(state.message.device);
                 known.touches = (!solve.contacts.is_empty()).then_some(solve.surface);
-                known.angles.clone_from(&solve.angles_rad);
+                angles.clone_into(&mut known.angles);
                 let of = (state.message.device, solve.event_ns);
                 let sample = self.recent.iter().find(|recent| recent.0 == of);
                 known.led = sample.map(|(_, sample)| (solve.clone(), sample.clone()));

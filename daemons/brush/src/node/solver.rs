@@ -112,6 +112,7 @@ impl Solver {
         self.model.set_scene(scene);
         self.model.tune(scene.tuning(&self.brush));
         self.model.soak(scene.wetness(&self.brush));
+        self.model.take_set(scene.set(&self.brush));
     }
 
     /// Changes to another brush; what waits stays.

@@ -1,6 +1,6 @@
 //! Faults of a scene's numbers: a program in any language may send one.
 
-use super::{BrushHandling, Layer, PaintSlot, Scene, Surface, Tuning};
+use super::{BrushHandling, BrushSet, Layer, PaintSlot, Scene, Surface, Tuning};
 use crate::values::{Quantity, Zoom};
 
 /// Cells of a surface each way, more than any has.
@@ -19,7 +19,8 @@ impl Scene {
         let wrong = self.paints.iter().any(PaintSlot::is_wrong)
             || self.tunings.iter().any(Tuning::is_wrong)
             || self.layers.iter().any(Layer::is_wrong)
-            || self.handlings.iter().any(BrushHandling::is_wrong);
+            || self.handlings.iter().any(BrushHandling::is_wrong)
+            || self.sets.iter().any(BrushSet::is_wrong);
         wrong.then_some("a paint, a layer or the use of a brush is not finite or out of range")
     }
 }
@@ -61,6 +62,13 @@ impl Tuning {
 impl Layer {
     fn is_wrong(&self) -> bool {
         !(0.0..=1.0).contains(&self.opacity)
+    }
+}
+
+impl BrushSet {
+    fn is_wrong(&self) -> bool {
+        let mut angles = self.angles_rad.as_flattened().iter();
+        !angles.all(|angle| angle.is_finite())
     }
 }
 

@@ -248,6 +248,18 @@ impl Tuning {
     }
 }
 
+wire_struct! {
+    /// Permanent set of a brush when it was last in the air.
+    pub struct BrushSet {
+        /// Name of the brush.
+        pub brush: String,
+        /// Grows each time that the painting gives it one: the brush takes that on.
+        pub given: u32,
+        /// The angles of its solve in the air; empty for an unbent head.
+        pub angles_rad: Vec<[f32; 2]>,
+    }
+}
+
 message! {
     /// The desk; cached for late joiners.
     pub struct Scene [version 7, at most 16777216 bytes] {
@@ -267,6 +279,9 @@ message! {
         pub versions: Vec<NamedVersion>,
         /// Brushes that are used in a way of their own.
         pub handlings: Vec<BrushHandling>,
+        /// Bends that stay in brushes.
+        #[serde(default)]
+        pub sets: Vec<BrushSet>,
     }
 }
 
@@ -278,6 +293,33 @@ impl Scene {
         tunings
             .find(|tuning| tuning.brush == brush)
             .map_or(1.0, Tuning::factor)
+    }
+
+    /// Permanent set of the brush called `brush`; absent if it never had one.
+    #[must_use]
+    pub fn set(&self, brush: &str) -> Option<&BrushSet> {
+        self.sets.iter().find(|set| set.brush == brush)
+    }
+
+    /// Notes the permanent set of the brush called `brush`, as the brush says.
+    pub fn note_set(&mut self, brush: &str, angles_rad: &[[f32; 2]]) {
+        match self.sets.iter_mut().find(|set| set.brush == brush) {
+            Some(set) => set.angles_rad = angles_rad.to_vec(),
+            None => self.sets.push(BrushSet {
+                brush: brush.to_owned(),
+                given: 0,
+                angles_rad: angles_rad.to_vec(),
+            }),
+        }
+    }
+
+    /// Gives the brush called `brush` a permanent set.
+    pub fn give_set(&mut self, brush: &str, angles_rad: &[[f32; 2]]) {
+        self.note_set(brush, angles_rad);
+        let set = self.sets.iter_mut().find(|set| set.brush == brush);
+        set.into_iter()
+            .for_each(|set| set.given = set.given.wrapping_add(1));
+        self.version += 1;
     }
 
     /// Wetness of the brush called `brush`, 0 to 1.

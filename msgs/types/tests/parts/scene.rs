@@ -2,7 +2,7 @@
 
 use maulstick_types::Mixture;
 use maulstick_types::scene::{
-    Environment, Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
+    BrushSet, Environment, Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
 };
 
 use super::{handling, pose};
@@ -85,5 +85,10 @@ pub(crate) fn scene() -> Scene {
             here: true,
         }],
         handlings: vec![handling()],
+        sets: vec![BrushSet {
+            brush: "main".into(),
+            given: 2,
+            angles_rad: vec![[0.01, -0.02]],
+        }],
     }
 }

@@ -200,6 +200,7 @@ fn head(file: &BrushFile) -> Result<(), BrushError> {
 fn spines(file: &BrushFile) -> Result<(), BrushError> {
     let spines = &file.spines;
     within("spines.volume", spines.volume, 0.0..=1000.0)?;
+    within("spines.damping_soaked", spines.damping_soaked, 0.0..=100.0)?;
     for bond in spines.bond {
         within("spines.bond", bond, 0.0..=1000.0)?;
     }

@@ -121,6 +121,9 @@ pub struct Spines {
     /// Torque of a joint's inner friction as a share of its spring's torque at 1 rad.
     #[serde(default)]
     pub damping: f64,
+    /// Factor on the inner friction of a soaked head: wet hair drags on hair.
+    #[serde(default = "two", skip_serializing_if = "is_two")]
+    pub damping_soaked: f64,
     /// Curl of the outer bristles toward the middle (outward if negative) at rest, from the ferrule to the point,
     /// degrees.
     #[serde(default)]
@@ -244,6 +247,14 @@ pub struct Contact {
 
 fn two() -> f64 {
     2.0
+}
+
+#[allow(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde passes a reference"
+)]
+fn is_two(value: &f64) -> bool {
+    *value == two()
 }
 
 /// Load of the head.

@@ -48,6 +48,10 @@ pub struct BrushModel {
     tuned: f64,
     /// Wetness, 0 to 1.
     wetness: f64,
+    /// Permanent set of the head when it was last in the air.
+    set: Vec<[f32; 2]>,
+    /// Number of the set that was given last; absent before the first scene.
+    given: Option<u32>,
 }
 
 /// State of the brush after a sample. Lengths are the desk's, axes those of the surface.
@@ -77,6 +81,8 @@ struct TrackedBrush {
     left_over_m: f64,
     /// Samples since the pen was set down, while its direction is unknown.
     waits: Waiting,
+    /// Permanent set that the head takes on once it is in the air.
+    reshaped: Option<Vec<[f32; 2]>>,
 }
 
 impl BrushModel {
@@ -102,16 +108,18 @@ impl BrushModel {
             strokes: StrokeCount::default(),
             tuned: 1.0,
             wetness: 0.0,
+            set: Vec::new(),
+            given: None,
         }
     }
 
-    /// Takes up another brush with the same tuned stiffness; the count of strokes continues.
+    /// Takes up another brush, unbent, with the same tuned stiffness; the count of strokes continues.
     pub fn take_up(&mut self, file: BrushFile) {
         self.tuft = SpineLayout::of(&file);
         self.tuft.stiffen(self.tuned);
         self.settings = settings_of(&file, &self.tuft);
         (self.mark, self.beside) = (Mark::of(&file), None);
-        (self.file, self.tracked) = (file, None);
+        (self.file, self.tracked, self.set) = (file, None, Vec::new());
         self.soak(self.wetness);
     }
 
@@ -135,13 +143,6 @@ impl BrushModel {
             self.settings.repulsion_n_m = self.tuft.repulsion_n_m;
             self.soak(self.wetness);
         }
-    }
-
-    /// Sets the wetness of the head: 0 as in its file, 1 soaked, where its hairs stick together most.
-    pub fn soak(&mut self, wetness: f64) {
-        let [made, soaked] = self.file.spines.bond;
-        self.wetness = wetness.clamp(0.0, 1.0);
-        self.tuft.bond = made + (soaked - made) * self.wetness;
     }
 
     /// True if there is a scene.
@@ -263,13 +264,17 @@ impl BrushModel {
                     .unwrap_or_else(|| self.land(&mut tracked, here, sample.in_air(), &plane));
                 if is_pen && sample.in_air() && tracked.head.touches() {
                     // The pen was released too far away to follow a bend there.
-                    tracked.head = SolvedHead::at_rest(&self.tuft, &here.pose);
+                    let set = tracked.head.set(&self.tuft);
+                    tracked.head = SolvedHead::bent(&self.tuft, &here.pose, &set);
                     solve = self.land(&mut tracked, here, true, &plane);
                 }
                 solves.push(solve);
                 tracked
             }
-            _ => {
+            lost => {
+                if let Some(lost) = lost {
+                    self.put_down(lost);
+                }
                 let mut tracked = self.fresh(&plane, here, is_pen);
                 let begins = self.begin_to_wait(&mut tracked, (here, Begins::Anew), sample, &plane);
                 let mut solve = begins
@@ -281,6 +286,9 @@ impl BrushModel {
         };
         tracked.newest = here;
         tracked.is_pressed = is_pen && !sample.in_air();
+        if !tracked.is_pressed {
+            self.note_set(&tracked);
+        }
         self.tracked = Some(tracked);
         solves
     }
@@ -379,8 +387,13 @@ impl BrushModel {
         if loses && self.lowest_at_rest(&brush) < 0.0 {
             // The head is bent away from a surface that it would reach unbent; kept so, it would leave a gap in the
             // stroke.
-            tracked.head = SolvedHead::at_rest(&self.tuft, &brush);
+            let set = tracked.head.set(&self.tuft);
+            tracked.head = SolvedHead::bent(&self.tuft, &brush, &set);
             converged = self.bend(tracked, &brush, plane);
+        }
+        converged &= self.reshape(tracked, &brush, plane);
+        if touched && !tracked.head.touches() {
+            converged = self.settle(tracked, &brush, plane);
         }
         let contacts = tracked.head.contacts();
         let stroke = if contacts.is_empty() {
@@ -389,6 +402,11 @@ impl BrushModel {
             self.strokes.touch(at.event_ns)
         };
         tracked.stroke = tracked.stroke.max(stroke);
+        let angles_rad = if contacts.is_empty() {
+            tracked.head.set(&self.tuft)
+        } else {
+            tracked.head.angles()
+        };
         let in_surface = Rigid {
             translation: brush.translation / plane.zoom,
             ..brush
@@ -404,7 +422,7 @@ impl BrushModel {
             },
             pose: in_surface.to_pose(),
             zoom: plane.zoom,
-            angles_rad: tracked.head.angles(),
+            angles_rad,
             contacts,
         }
     }
@@ -437,7 +455,7 @@ impl BrushModel {
         TrackedBrush {
             surface: plane.id,
             zoom: plane.zoom,
-            head: SolvedHead::at_rest(&self.tuft, &brush),
+            head: SolvedHead::bent(&self.tuft, &brush, &self.set),
             newest: here,
             is_pen,
             is_pressed: false,
@@ -448,10 +466,12 @@ impl BrushModel {
             before: None,
             left_over_m: 0.0,
             waits: Waiting::default(),
+            reshaped: None,
         }
     }
 }
 
+mod bend;
 mod force;
 mod height;
 mod messages;

@@ -213,6 +213,7 @@ fn brush(
             bending_stiffness_n_mm2: 0.0,
             stiffness_profile: Vec::new(),
             damping: 0.0,
+            damping_soaked: like.spines.damping_soaked,
             curl_deg: 0.0,
             ..like.spines
         },

@@ -5,6 +5,7 @@
 //! at each station, in a frame that turns with the middle of the head. A root outside the hull has the weights of the
 //! hull's nearest point. As the head is pressed down the strips open, and wet ones come together in clumps.
 
+mod angles;
 mod beside;
 mod clump;
 pub mod curve;

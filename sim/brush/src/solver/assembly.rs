@@ -9,7 +9,7 @@
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
-use super::{ContactConstraint, Energy, Model, Problem, Solver, Tangents};
+use super::{ContactConstraint, Damper, Energy, Model, Problem, Solver, Tangents};
 use crate::energy::damping::damping;
 use crate::energy::neighbour_repulsion::neighbour_repulsion;
 use crate::energy::spring::{bent, rest_after, spring, straight};
@@ -32,7 +32,7 @@ impl Solver {
             ..Energy::default()
         };
         if self.damped {
-            energy.damping = self.look_at_dampers(spine, shape);
+            energy.damping = self.look_at_dampers(problem, shape);
         }
         let slopes = self.point.slopes.iter_mut();
         for ((slope, bond), d) in slopes.zip(problem.bonds).zip(&shape.directions) {
@@ -82,19 +82,27 @@ impl Solver {
         value
     }
 
-    /// Inner friction, which acts between neighbours: v = d_i − d_{i−1} − the chord before.
-    fn look_at_dampers(&mut self, spine: &Spine, shape: &SpineShape) -> f64 {
+    /// Inner friction, which draws each segment to its anchor.
+    fn look_at_dampers(&mut self, problem: Problem<'_>, shape: &SpineShape) -> f64 {
+        let (spine, factor) = (problem.spine, problem.settings.damping);
         let point = &mut self.point;
         let (mut value, mut before) = (0.0, shape.base());
         point.dampers.clear();
         for (i, d) in shape.directions.iter().enumerate() {
-            let f = damping(spine.damping[i], *d - before - self.chords[i]);
+            let turn = &self.turns[i];
+            let anchor = *turn * before;
+            let f = damping(factor * spine.damping[i], *d, anchor);
+            let by_before = turn.transpose() * *d;
             value += f.value;
-            point.slopes[i] += f.torque;
+            point.slopes[i] += anchor * f.first;
             if i > 0 {
-                point.slopes[i - 1] -= f.torque;
+                point.slopes[i - 1] += by_before * f.first;
             }
-            point.dampers.push(f);
+            point.dampers.push(Damper {
+                energy: f,
+                anchor,
+                by_before,
+            });
             before = *d;
         }
         value
@@ -176,7 +184,7 @@ impl Solver {
         }
         self.assemble_springs(shape);
         if self.damped {
-            self.assemble_dampers(shape);
+            self.assemble_dampers();
         }
         self.assemble_pulls(spine);
     }
@@ -214,25 +222,21 @@ impl Solver {
         }
     }
 
-    fn assemble_dampers(&mut self, shape: &SpineShape) {
-        let mut before = shape.base();
-        for (i, d) in shape.directions.iter().enumerate() {
-            let f = self.point.dampers[i];
-            let v = *d - before - self.chords[i];
+    fn assemble_dampers(&mut self) {
+        for (i, damper) in self.point.dampers.iter().enumerate() {
+            let f = damper.energy;
             let here = self.model.tangents[i];
-            let level = DMat2::from_diagonal(DVec2::splat(f.across));
-            let along = here.of(v);
-            self.model.add(i, i, level - outer(along * f.along, along));
+            let own = here.of(damper.anchor);
+            self.model.add(i, i, outer(own * f.second, own));
             if i > 0 {
                 let above = self.model.tangents[i - 1];
-                let other = above.of(v);
-                let mixed = product(above, here.0, here.1) * f.across;
-                self.model
-                    .add(i - 1, i, outer(other * f.along, along) - mixed);
-                self.model
-                    .add(i - 1, i - 1, level - outer(other * f.along, other));
+                let other = above.of(damper.by_before) * f.second;
+                let back = self.turns[i].transpose();
+                let turned = product(above, back * here.0, back * here.1) * f.first;
+                self.model.add(i - 1, i, outer(other, own) + turned);
+                let curved = outer(other, above.of(damper.by_before));
+                self.model.add(i - 1, i - 1, curved);
             }
-            before = *d;
         }
     }
 

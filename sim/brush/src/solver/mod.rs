@@ -1,6 +1,7 @@
 //! The constrained minimum of a spine's energy (Baxter 2004, eq. 3.1 and 3.5), by Newton steps with
 //! exact second derivatives, each a small quadratic program.
 
+mod anchors;
 mod assembly;
 mod contact_constraint;
 mod line_search;
@@ -8,10 +9,10 @@ mod newton;
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
+use self::anchors::Damper;
 pub use self::contact_constraint::{ContactConstraint, HalfSpace};
 use crate::blocks::BlockFactor;
 use crate::energy::bond::Bond;
-use crate::energy::damping::Damping;
 use crate::energy::friction::Anisotropy;
 use crate::energy::spring::OfCosine;
 use crate::qp::DualSolver;
@@ -52,6 +53,8 @@ pub struct Settings {
     pub epsilon_m: f64,
     /// Stiffness against neighbours that come nearer than at rest, N/m.
     pub repulsion_n_m: f64,
+    /// Factor on the inner friction of the joints.
+    pub damping: f64,
     /// Direction along the surface in which an upright spine gives way, a unit vector.
     pub yields: DVec2,
     /// Greatest number of Newton steps.
@@ -71,6 +74,7 @@ impl Settings {
             anisotropy: Anisotropy::default(),
             epsilon_m: 8e-5 * length_m,
             repulsion_n_m: 0.0,
+            damping: 1.0,
             yields: YIELDS,
             max_iterations: 60,
             tolerance: 1e-9,
@@ -142,8 +146,8 @@ impl Solution {
 #[derive(Clone, Debug, Default)]
 pub struct Solver {
     before: Vec<DVec3>,
-    /// Chord of each joint at the beginning of the step.
-    chords: Vec<DVec3>,
+    /// The rotation of each joint that takes the segment before it to its anchor, fixed in a step.
+    turns: Vec<DMat3>,
     /// Rest direction of each segment if the one before points along the base; empty if that is straight.
     rest: Vec<DVec3>,
     damped: bool,
@@ -166,7 +170,7 @@ struct Point {
     /// Ends of the segments, m.
     ends: Vec<DVec3>,
     bends: Vec<OfCosine>,
-    dampers: Vec<Damping>,
+    dampers: Vec<Damper>,
     /// Force and stiffness of the loads on each segment's end.
     pulls: Vec<(DVec3, DMat3)>,
     /// Derivative of the energy by each direction, in space.
@@ -310,6 +314,7 @@ impl Solver {
                 settings,
             );
         }
+        self.move_anchors(shape);
         solution
     }
 
@@ -394,15 +399,10 @@ impl Solver {
         (energy, &self.point.slopes)
     }
 
-    /// Stores the initial shape for the energy of damping, and the rest shape of the spine.
+    /// Stores how the anchors lie to the segments before them, and the rest shape of the spine.
     pub fn begin(&mut self, spine: &Spine, shape: &SpineShape) {
-        let mut above = shape.base();
-        self.chords.clear();
-        for d in &shape.directions {
-            self.chords.push(*d - above);
-            above = *d;
-        }
         self.damped = spine.damping.iter().any(|d| *d > 0.0);
+        self.turn_to_anchors(shape);
         self.rest.clear();
         self.rest
             .extend(spine.rest.iter().map(|rest| shape.frame * *rest));

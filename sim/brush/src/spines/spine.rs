@@ -90,6 +90,8 @@ pub struct SpineShape {
     pub frame: DQuat,
     /// Unit direction of each segment.
     pub directions: Vec<DVec3>,
+    /// Unit direction to which the inner friction of its joint draws each segment.
+    pub anchors: Vec<DVec3>,
 }
 
 /// The spine's base frame is the brush frame turned half around x: its +z is the brush's −z.
@@ -99,10 +101,12 @@ impl SpineShape {
     /// A straight spine in a frame of orientation `frame`.
     #[must_use]
     pub fn straight(root: DVec3, frame: DQuat, joints: usize) -> Self {
+        let directions = vec![frame * DVec3::NEG_Z; joints];
         Self {
             root,
             frame,
-            directions: vec![frame * DVec3::NEG_Z; joints],
+            anchors: directions.clone(),
+            directions,
         }
     }
 
@@ -111,10 +115,11 @@ impl SpineShape {
     pub fn at_rest(root: DVec3, frame: DQuat, spine: &Spine) -> Self {
         let mut shape = Self::straight(root, frame, spine.joints());
         shape.relax(spine);
+        shape.anchors.clone_from(&shape.directions);
         shape
     }
 
-    /// Unbends all joints.
+    /// Unbends all joints; their anchors stay.
     pub fn relax(&mut self, spine: &Spine) {
         let base = self.base();
         let mut before = base;
@@ -160,9 +165,8 @@ impl SpineShape {
     pub fn carry(&mut self, root: DVec3, frame: DQuat) {
         let turn = frame * self.frame.conjugate();
         (self.root, self.frame) = (root, frame);
-        self.directions
-            .iter_mut()
-            .for_each(|d| *d = (turn * *d).normalize());
+        let directions = self.directions.iter_mut().chain(&mut self.anchors);
+        directions.for_each(|d| *d = (turn * *d).normalize());
     }
 
     /// θ and φ of each joint, rad, in single precision.
@@ -174,11 +178,9 @@ impl SpineShape {
     pub fn exact_angles(&self) -> impl Iterator<Item = [f64; 2]> {
         let mut frame = self.frame * BRUSH_TO_SPINE;
         self.directions.iter().map(move |direction| {
-            let local = frame.conjugate() * *direction;
-            let theta = std::f64::consts::FRAC_PI_2 - acos(-local.y);
-            let phi = atan2(local.x, local.z);
-            frame *= bend([theta, phi]);
-            [theta, phi]
+            let angles = angles_of(frame.conjugate() * *direction);
+            frame *= bend(angles);
+            angles
         })
     }
 
@@ -197,7 +199,7 @@ impl SpineShape {
         angles: impl Iterator<Item = [f64; 2]>,
     ) -> Self {
         let mut frame = orientation * BRUSH_TO_SPINE;
-        let directions = angles
+        let directions: Vec<DVec3> = angles
             .map(|angles| {
                 frame = (frame * bend(angles)).normalize();
                 frame * DVec3::Z
@@ -206,9 +208,26 @@ impl SpineShape {
         Self {
             root,
             frame: orientation,
+            anchors: directions.clone(),
             directions,
         }
     }
+}
+
+/// θ and φ of a direction in the frame of the brush, rad.
+pub(super) fn angles_in_brush(direction: DVec3) -> [f64; 2] {
+    angles_of(BRUSH_TO_SPINE.conjugate() * direction)
+}
+
+/// The direction in the frame of the brush of given angles.
+pub(super) fn direction_in_brush(angles: [f64; 2]) -> DVec3 {
+    BRUSH_TO_SPINE * bend(angles) * DVec3::Z
+}
+
+/// θ and φ of a direction in a spine's frame.
+fn angles_of(local: DVec3) -> [f64; 2] {
+    let theta = std::f64::consts::FRAC_PI_2 - acos(-local.y);
+    [theta, atan2(local.x, local.z)]
 }
 
 /// R_y(φ)·R_x(θ).

@@ -132,6 +132,13 @@ impl SpineLayout {
         }
     }
 
+    /// True if its joints have inner friction.
+    #[must_use]
+    pub fn is_plastic(&self) -> bool {
+        let roots = self.roots.iter();
+        roots.flat_map(|root| &root.spine.damping).any(|d| *d > 0.0)
+    }
+
     /// Number of joints of all spines.
     #[must_use]
     pub fn joints(&self) -> usize {

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use maulstick_num::geometry::{Rigid, rotation, shortest_arc};
 use maulstick_num::sin_cos;
-use maulstick_types::scene::{CANVAS, Scene, Surface};
+use maulstick_types::scene::{CANVAS, Scene, Surface, WellKind};
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
 use crate::palette_place::{corner_radii, is_on};
@@ -127,6 +127,15 @@ impl Obstacle {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Desk {
     planes: Vec<Plane>,
+    jars: Vec<Jar>,
+}
+
+/// A jar of cleaner on a surface, in the surface's own lengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Jar {
+    surface: u32,
+    center_m: DVec2,
+    radius_m: f64,
 }
 
 impl Desk {
@@ -135,7 +144,25 @@ impl Desk {
     pub fn of(scene: &Scene) -> Self {
         let mut planes: Vec<Plane> = scene.surfaces.iter().map(Plane::of).collect();
         planes.sort_by_key(|plane| std::cmp::Reverse(plane.id));
-        Self { planes }
+        let jars = scene.surfaces.iter().flat_map(|surface| {
+            let wells = surface.wells.iter();
+            let cleaners = wells.filter(|well| well.kind == WellKind::Cleaner);
+            cleaners.map(|well| Jar {
+                surface: surface.id,
+                center_m: well.center_m.into(),
+                radius_m: well.radius_m,
+            })
+        });
+        let jars = jars.collect();
+        Self { planes, jars }
+    }
+
+    /// True if a point over a surface, in its frame with the desk's lengths, is in a jar of cleaner.
+    #[must_use]
+    pub fn cleans(&self, plane: &Plane, p: DVec3) -> bool {
+        let at = p.truncate() / plane.zoom;
+        let mut jars = self.jars.iter().filter(|jar| jar.surface == plane.id);
+        jars.any(|jar| at.distance(jar.center_m) < jar.radius_m)
     }
 
     /// Obstacles to a brush with a head of `head_m` and its ferrule at `ferrule`, in the frame of `surface`: that
@@ -298,6 +325,7 @@ mod tests {
         let (canvas, raised) = (plane(CANVAS, 0.0, 0.0), plane(1, -0.15, 0.01));
         let desk = Desk {
             planes: vec![raised, canvas],
+            jars: Vec::new(),
         };
         let over_gap = DVec3::new(-0.045, 0.1, 0.02);
         let [own, board] = &desk.obstacles(&canvas, over_gap, 0.03)[..] else {
@@ -314,6 +342,7 @@ mod tests {
         assert_eq!(desk.obstacles(&canvas, far, 0.03).len(), 1, "out of reach");
         let even = Desk {
             planes: vec![plane(1, -0.15, 0.0), canvas],
+            jars: Vec::new(),
         };
         assert_eq!(
             even.obstacles(&canvas, over_gap, 0.03),

@@ -33,6 +33,7 @@ pub(crate) fn scene() -> Scene {
         layers: Vec::new(),
         versions: Vec::new(),
         handlings: Vec::new(),
+        sets: Vec::new(),
         light,
     }
 }

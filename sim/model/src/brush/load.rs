@@ -63,8 +63,8 @@ pub fn film_share(thinner: f64) -> f64 {
     1.0 - RUNS_OFF * thinner
 }
 
-/// The paint on a brush.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// The paint on a brush, and the bend that stays in it.
+#[derive(Clone, Debug, PartialEq)]
 pub struct BrushLoad {
     texels: usize,
     held: [Option<Box<Held>>; SLOTS],
@@ -72,6 +72,8 @@ pub struct BrushLoad {
     films: Vec<u32>,
     /// Number of steps with contact.
     steps: u64,
+    /// Permanent set: the angles of a solve in the air, rad; empty for an unbent head.
+    pub set: Vec<[f32; 2]>,
 }
 
 impl BrushLoad {
@@ -128,6 +130,7 @@ impl BrushLoad {
             held: [const { None }; SLOTS],
             films: vec![0; texels],
             steps: 0,
+            set: Vec::new(),
         }
     }
 
@@ -192,10 +195,11 @@ impl BrushLoad {
         run.iter().copied().max().unwrap_or(0)
     }
 
-    /// Takes all paint off.
+    /// Takes all paint off; the brush stays bent.
     pub fn take_all(&mut self) -> Counts {
-        let counts = self.counts();
+        let (counts, set) = (self.counts(), std::mem::take(&mut self.set));
         *self = Self::clean(self.texels / TEXELS_PER_STRIP);
+        self.set = set;
         counts
     }
 
@@ -271,7 +275,7 @@ impl BrushLoad {
             return Self::spread(strips, &self.counts(), 0.0);
         }
         let mut load = Self::clean(strips);
-        load.steps = self.steps;
+        (load.steps, load.set) = (self.steps, self.set.clone());
         let stands = finer.nearest_of_first(own.min(strips));
         let mut shares = vec![0; own.min(strips)];
         stands.iter().for_each(|strip| shares[*strip] += 1);

@@ -21,7 +21,7 @@ pub mod layer;
 pub mod surface;
 
 pub use applied::Applied;
-pub use brush::{Clean, Handle, Load, LoadFrom, Tune};
+pub use brush::{Clean, Handle, Load, LoadFrom, Reshape, Tune};
 #[cfg(feature = "cli")]
 pub use form::CommandForm;
 pub use form::{Form, StepForm};
@@ -46,7 +46,7 @@ use crate::painting::Painting;
 macro_rules! for_each_edit {
     ($with:ident) => {
         $with! {
-            Load, LoadFrom, Clean, Tune, Handle,
+            Load, LoadFrom, Clean, Reshape, Tune, Handle,
             Dry, StopDrying, Wet, Varnish, Opacity, NameLayer,
             Place, Relight, Ground, Tooth, Size, Piles, Fill, Scrape, Wells, Convert, Flip,
             Undo, Redo, Keep, ReturnTo, Branch, Forget, GoTo

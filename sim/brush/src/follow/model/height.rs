@@ -34,6 +34,10 @@ impl BrushModel {
         let upright = (brush.rotation * DVec3::Z).z;
         let lacks = self.lowest_at_rest(brush) - brush.point(tip).z - short * upright;
         brush.translation.z -= lacks.max(0.0);
+        // A bent head ends higher than an unbent one: its pen goes down along its axis until it touches as early.
+        let raised = self.lowest_bent(brush) - self.lowest_at_rest(brush);
+        let axis = brush.rotation * DVec3::Z;
+        brush.translation -= axis * (raised.max(0.0) / axis.z.max(LEAST_COSINE));
     }
 
     /// Height of the lowest joint of the unbent head.

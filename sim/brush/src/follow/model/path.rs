@@ -38,7 +38,11 @@ impl BrushModel {
         let tracked = tracked?;
         let passes = self.speed.passes(way_m, event_ns - tracked.newest.event_ns);
         self.too_fast += u64::from(!passes);
-        passes.then_some(tracked)
+        if !passes {
+            self.put_down(tracked);
+            return None;
+        }
+        Some(tracked)
     }
 
     /// Solves a touching brush at each step of its path to a sample, with a preview at the sample.

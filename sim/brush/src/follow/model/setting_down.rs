@@ -123,7 +123,9 @@ impl BrushModel {
     /// Forgets the position of the brush, after setting down a pen that still waits.
     pub(super) fn give_up(&mut self) -> Vec<Solve> {
         let solves = self.finish();
-        self.tracked = None;
+        if let Some(tracked) = self.tracked.take() {
+            self.put_down(tracked);
+        }
         solves
     }
 
@@ -244,7 +246,7 @@ impl BrushModel {
             at.pose.translation += (toward * way_m * (gone - 1.0)).extend(above_m);
             let brush = self.placed(tracked, &at);
             if stride == 0 {
-                tracked.head = SolvedHead::at_rest(&self.tuft, &brush);
+                tracked.head = SolvedHead::bent(&self.tuft, &brush, &self.set);
             }
             let (room, settings) = (&mut self.solver, &self.settings);
             tracked

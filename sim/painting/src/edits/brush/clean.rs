@@ -1,4 +1,4 @@
-//! Takes all paint off a brush.
+//! Takes all paint off a brush, whose bend goes with it.
 
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
@@ -42,6 +42,7 @@ impl PaintingEdit for Clean {
         let brush = bench.brushes.at(&self.brush)?;
         bench.begin_step(StepName::Clean, Some(brush));
         bench.brushes[brush].empty(&mut bench.accounts.ledger);
+        bench.brushes[brush].reshape(&mut bench.desk.scene);
         bench.end_step_of(brush);
         Ok(Applied::Done)
     }

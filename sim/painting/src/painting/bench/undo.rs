@@ -170,7 +170,7 @@ impl Workbench {
         }
         for (name, pages) in &effects.loads {
             if let Some(brush) = self.brushes.find_mut(name) {
-                brush.carry(&pages[to]);
+                brush.carry(&pages[to], &mut self.desk.scene);
             }
         }
         self.accounts.book(&effects.booked, way.times());

@@ -58,8 +58,11 @@ impl Workbench {
         // Its books know nothing of brushes that came later.
         for brush in self.brushes.iter_mut() {
             match to.rest.loads.get(&brush.name) {
-                Some(page) => brush.carry(page),
-                None => brush.load = Arc::new(BrushLoad::clean(brush.head.strips())),
+                Some(page) => brush.carry(page, &mut self.desk.scene),
+                None => {
+                    brush.load = Arc::new(BrushLoad::clean(brush.head.strips()));
+                    self.desk.scene.give_set(&brush.name, &[]);
+                }
             }
         }
         for surface in self.desk.surfaces.iter_mut() {

@@ -26,6 +26,12 @@ impl PaintingBrush {
         ledger.to_cleaner(&left);
     }
 
+    /// Takes the bend out of it.
+    pub(crate) fn reshape(&mut self, scene: &mut Scene) {
+        Arc::make_mut(&mut self.load).set.clear();
+        scene.give_set(&self.name, &[]);
+    }
+
     /// Fills it from the tubes after it is cleaned; its deferred steps are settled.
     pub(crate) fn fill(&mut self, parts: &Halves<'_>, desk: &Desk, seed: u64, ledger: &mut Ledger) {
         self.empty(ledger);

@@ -14,6 +14,7 @@ use maulstick_canvas::window::Window;
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 use maulstick_model::path::PathStepper;
+use maulstick_types::scene::Scene;
 use maulstick_types::{Mixture, name_hash};
 
 use handling::UnderBrush;
@@ -100,6 +101,9 @@ impl PaintingBrush {
             let counts = self.load.counts();
             self.load = BrushLoad::spread(head.strips(), &counts, film_full).into();
         }
+        if self.file != file {
+            Arc::make_mut(&mut self.load).set.clear();
+        }
         (self.file, self.thinned, self.path) = (file, thinned, None);
         self.tidy = head;
         self.head = self.disordered();
@@ -181,9 +185,12 @@ impl PaintingBrush {
             || self.load.counts() == page.get().counts()
     }
 
-    /// Replaces its load by that of a page.
-    pub(crate) fn carry(&mut self, page: &Page<BrushLoad>) {
+    /// Replaces its load by that of a page, and gives it the bend of that in a scene.
+    pub(crate) fn carry(&mut self, page: &Page<BrushLoad>, scene: &mut Scene) {
         let load = page.get();
+        if load.set != self.load.set {
+            scene.give_set(&self.name, &load.set);
+        }
         self.path = None;
         self.deferral = Deferral::default();
         if load.texels() != self.load.texels() {

@@ -8,6 +8,8 @@ mod tiles;
 mod timing;
 mod wells;
 
+use std::sync::Arc;
+
 use maulstick_model::brush::scale::Scale;
 use maulstick_model::path::PathStepper;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
@@ -43,7 +45,8 @@ impl Workbench {
             let brush = own.name.clone();
             return Err(BrushError::State { brush, fault }.into());
         }
-        if solve.stroke != 0 && !own.head.fits(solve.angles_rad.len()) {
+        let angles = own.head.angles(solve);
+        if solve.stroke != 0 && angles.is_none() {
             return Err(BrushError::Unfit(own.name.clone()).into());
         }
         self.accounts.note_time(solve.event_ns);
@@ -54,6 +57,9 @@ impl Workbench {
             return Ok(());
         }
         if solve.stroke == 0 {
+            if angles.is_some_and(|angles| angles.len() < solve.angles_rad.len()) {
+                self.note_set(brush, &solve.angles_rad);
+            }
             self.lift(brush);
             self.backend.stroke_ends();
             return Ok(());
@@ -68,6 +74,15 @@ impl Workbench {
             surface,
         };
         stroke.follow(epoch, solve)
+    }
+
+    /// Notes the bend that stays in a brush in the air.
+    fn note_set(&mut self, brush: usize, set: &[[f32; 2]]) {
+        let own = &mut self.brushes[brush];
+        if own.load.set != set {
+            self.desk.scene.note_set(&own.name, set);
+            Arc::make_mut(&mut own.load).set = set.to_vec();
+        }
     }
 
     /// Ends a brush's contact; its paint relaxes.
