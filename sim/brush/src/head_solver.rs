@@ -107,6 +107,11 @@ impl SolvedHead {
         set
     }
 
+    /// Takes the head to `brush` through the air, with the bend that its joints hold.
+    pub(crate) fn leap(&mut self, tuft: &SpineLayout, brush: &Rigid) {
+        *self = Self::bent(tuft, brush, &self.set(tuft));
+    }
+
     /// All spines, and the core.
     fn all_mut(&mut self) -> impl Iterator<Item = &mut SolvedSpine> {
         self.spines.iter_mut().chain([&mut self.core])

@@ -1,7 +1,7 @@
 //! The bend that stays in a brush: as long as it is not reshaped, however often it is solved, and never more than its
 //! friction holds.
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3, Vec2};
 use maulstick_brush::file::library::LIBRARY;
 use maulstick_brush::solver::{ContactConstraint, HalfSpace, Settings, Solver};
 use maulstick_brush::{BrushFile, BrushModel, Spine, SpineShape};
@@ -78,7 +78,7 @@ impl Hand {
     /// Moves there in a straight line.
     fn go(&mut self, to: [f64; 2]) -> Solve {
         let from = self.at;
-        let way = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let way = DVec2::from_array(from).distance(to.into());
         let steps = (way / self.stride_m).ceil().max(1.0) as u32;
         let step = |i: u32| f64::from(i) / f64::from(steps);
         let path = (1..=steps).map(|i| [0, 1].map(|k| from[k] + (to[k] - from[k]) * step(i)));
@@ -100,7 +100,7 @@ impl Hand {
         let rest = Self::of(self.file.clone()).hold([0.0, -0.1]);
         let joints = self.file.spines.all_joints();
         let pairs = solve.angles_rad.iter().zip(&rest.angles_rad).take(joints);
-        let bends = pairs.map(|(a, b)| f64::from((a[0] - b[0]).hypot(a[1] - b[1])));
+        let bends = pairs.map(|(a, b)| f64::from(Vec2::from_array(*a).distance((*b).into())));
         (bends.sum::<f64>() / joints as f64).to_degrees()
     }
 }

@@ -7,6 +7,8 @@ use maulstick_types::brush::{Solve, solve_flags};
 use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
+use bend::KeptSet;
+use height::Reach;
 use setting_down::{Begins, Waiting};
 
 use crate::desk::{Desk, Obstacle, Plane, aim, ferrule};
@@ -48,10 +50,7 @@ pub struct BrushModel {
     tuned: f64,
     /// Wetness, 0 to 1.
     wetness: f64,
-    /// Permanent set of the head when it was last in the air.
-    set: Vec<[f32; 2]>,
-    /// Number of the set that was given last; absent before the first scene.
-    given: Option<u32>,
+    set: KeptSet,
 }
 
 /// State of the brush after a sample. Lengths are the desk's, axes those of the surface.
@@ -108,8 +107,7 @@ impl BrushModel {
             strokes: StrokeCount::default(),
             tuned: 1.0,
             wetness: 0.0,
-            set: Vec::new(),
-            given: None,
+            set: KeptSet::default(),
         }
     }
 
@@ -119,7 +117,8 @@ impl BrushModel {
         self.tuft.stiffen(self.tuned);
         self.settings = settings_of(&file, &self.tuft);
         (self.mark, self.beside) = (Mark::of(&file), None);
-        (self.file, self.tracked, self.set) = (file, None, Vec::new());
+        self.set.angles.clear();
+        (self.file, self.tracked) = (file, None);
         self.soak(self.wetness);
     }
 
@@ -205,7 +204,7 @@ impl BrushModel {
             brush.translation.z = brush.translation.z.max(2.0 * length);
         }
         let is_pen = matches!(sample.pose, StylusPose::Contact { .. });
-        self.hold(&mut brush, sample, &plane);
+        self.reach().hold(&mut brush, sample, &plane);
         let here = Sampled {
             pose: brush,
             event_ns,
@@ -264,18 +263,14 @@ impl BrushModel {
                     .unwrap_or_else(|| self.land(&mut tracked, here, sample.in_air(), &plane));
                 if is_pen && sample.in_air() && tracked.head.touches() {
                     // The pen was released too far away to follow a bend there.
-                    let set = tracked.head.set(&self.tuft);
-                    tracked.head = SolvedHead::bent(&self.tuft, &here.pose, &set);
+                    tracked.head.leap(&self.tuft, &here.pose);
                     solve = self.land(&mut tracked, here, true, &plane);
                 }
                 solves.push(solve);
                 tracked
             }
             lost => {
-                if let Some(lost) = lost {
-                    self.put_down(lost);
-                }
-                let mut tracked = self.fresh(&plane, here, is_pen);
+                let mut tracked = self.fresh(lost, &plane, here, is_pen);
                 let begins = self.begin_to_wait(&mut tracked, (here, Begins::Anew), sample, &plane);
                 let mut solve = begins
                     .unwrap_or_else(|| self.land(&mut tracked, here, sample.in_air(), &plane));
@@ -286,10 +281,7 @@ impl BrushModel {
         };
         tracked.newest = here;
         tracked.is_pressed = is_pen && !sample.in_air();
-        if !tracked.is_pressed {
-            self.note_set(&tracked);
-        }
-        self.tracked = Some(tracked);
+        self.keep(tracked);
         solves
     }
 
@@ -368,6 +360,16 @@ impl BrushModel {
         }
     }
 
+    /// How far down the head reaches.
+    fn reach(&self) -> Reach<'_> {
+        Reach {
+            tuft: &self.tuft,
+            length_m: self.file.length_m(),
+            desk: self.desk.as_ref(),
+            set: &self.set.angles,
+        }
+    }
+
     /// Surface below a sample. A stroke stays on the surface where it began, even beyond its edge.
     fn plane_under(&self, sample: &StylusSample) -> Option<Plane> {
         let desk = self.desk.as_ref()?;
@@ -384,11 +386,10 @@ impl BrushModel {
         let touched = tracked.head.touches();
         let mut converged = self.bend(tracked, &brush, plane);
         let loses = tracked.is_pressed && (touched || !converged) && !tracked.head.touches();
-        if loses && self.lowest_at_rest(&brush) < 0.0 {
+        if loses && self.reach().lowest_at_rest(&brush) < 0.0 {
             // The head is bent away from a surface that it would reach unbent; kept so, it would leave a gap in the
             // stroke.
-            let set = tracked.head.set(&self.tuft);
-            tracked.head = SolvedHead::bent(&self.tuft, &brush, &set);
+            tracked.head.leap(&self.tuft, &brush);
             converged = self.bend(tracked, &brush, plane);
         }
         converged &= self.reshape(tracked, &brush, plane);
@@ -449,13 +450,20 @@ impl BrushModel {
         }
     }
 
-    fn fresh(&self, plane: &Plane, here: Sampled, is_pen: bool) -> TrackedBrush {
+    fn fresh(
+        &mut self,
+        lost: Option<TrackedBrush>,
+        plane: &Plane,
+        here: Sampled,
+        is_pen: bool,
+    ) -> TrackedBrush {
+        lost.into_iter().for_each(|lost| self.put_down(lost));
         let mut brush = here.pose;
         self.tuft.raise(&mut brush, self.file.length_m());
         TrackedBrush {
             surface: plane.id,
             zoom: plane.zoom,
-            head: SolvedHead::bent(&self.tuft, &brush, &self.set),
+            head: SolvedHead::bent(&self.tuft, &brush, &self.set.angles),
             newest: here,
             is_pen,
             is_pressed: false,

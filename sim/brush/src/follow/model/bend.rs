@@ -13,6 +13,15 @@ use crate::head_solver::SolvedHead;
 /// Solves of a head that was just lifted: neighbouring spines that were apart come to rest against each other.
 const SETTLING: usize = 8;
 
+/// Permanent set of a head when it was last in the air.
+#[derive(Debug, Default)]
+pub(super) struct KeptSet {
+    /// As [`SolvedHead::set`] gives it.
+    pub(super) angles: Vec<[f32; 2]>,
+    /// Number of the set that was given last; absent before the first scene.
+    given: Option<u32>,
+}
+
 impl BrushModel {
     /// Sets the wetness of the head: 0 as in its file, 1 soaked, where its hairs stick together most and drag on each
     /// other.
@@ -28,11 +37,11 @@ impl BrushModel {
     /// contact, as soon as it is lifted.
     pub fn take_set(&mut self, set: Option<&BrushSet>) {
         let given = set.map_or(0, |set| set.given);
-        if self.given.replace(given) == Some(given) {
+        if self.set.given.replace(given) == Some(given) {
             return;
         }
         if let Some(set) = set {
-            self.set.clone_from(&set.angles_rad);
+            self.set.angles.clone_from(&set.angles_rad);
             if let Some(tracked) = &mut self.tracked {
                 tracked.reshaped = Some(set.angles_rad.clone());
             }
@@ -72,17 +81,18 @@ impl BrushModel {
         passes.last().unwrap_or(true)
     }
 
-    /// Notes the permanent set of a head in the air.
-    pub(super) fn note_set(&mut self, tracked: &TrackedBrush) {
-        if !tracked.head.touches() && tracked.waits.is_empty() {
-            self.set = tracked.head.set(&self.tuft);
+    /// Goes on from here at the next sample, and notes the permanent set of a head in the air.
+    pub(super) fn keep(&mut self, tracked: TrackedBrush) {
+        if !tracked.head.touches() && !tracked.is_pressed {
+            self.set.angles = tracked.head.set(&self.tuft);
         }
+        self.tracked = Some(tracked);
     }
 
     /// Lifts a head whose path is lost, and notes its permanent set.
     pub(super) fn put_down(&mut self, mut tracked: TrackedBrush) {
         if let Some(set) = tracked.reshaped {
-            self.set = set;
+            self.set.angles = set;
             return;
         }
         if tracked.head.touches() {
@@ -94,12 +104,6 @@ impl BrushModel {
                 tracked.head.solve(room, tuft, &brush, &ground, settings);
             }
         }
-        self.note_set(&tracked);
-    }
-
-    /// Height of the lowest joint of the head in the air.
-    pub(super) fn lowest_bent(&self, brush: &Rigid) -> f64 {
-        let head = SolvedHead::bent(&self.tuft, brush, &self.set);
-        head.heights().fold(f64::INFINITY, f64::min)
+        self.set.angles = tracked.head.set(&self.tuft);
     }
 }

@@ -4,15 +4,25 @@ use glam::DVec3;
 use maulstick_num::geometry::Rigid;
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
-use super::BrushModel;
-use crate::desk::{HOVER_M, Plane};
+use crate::desk::{Desk, HOVER_M, Plane};
+use crate::head_solver::SolvedHead;
+use crate::spine_layout::SpineLayout;
 
 /// Greatest number of rises of a hovering brush: from over a tilted canvas a joint may come over the palette.
 const RISES: usize = 4;
 /// Least cosine between two surfaces over which one brush may hover.
 const LEAST_COSINE: f64 = 0.1;
 
-impl BrushModel {
+/// How far down a head reaches, at rest and with its bend.
+pub(super) struct Reach<'a> {
+    pub(super) tuft: &'a SpineLayout,
+    pub(super) length_m: f64,
+    pub(super) desk: Option<&'a Desk>,
+    /// Its permanent set.
+    pub(super) set: &'a [[f32; 2]],
+}
+
+impl Reach<'_> {
     /// Sets the height of a pen's brush from its sample and head; a measured handle stays where it is.
     pub(super) fn hold(&self, brush: &mut Rigid, sample: &StylusSample, plane: &Plane) {
         if !matches!(sample.pose, StylusPose::Contact { .. }) {
@@ -28,7 +38,7 @@ impl BrushModel {
     /// Lowers a pressed brush whose head is shorter below than along its axis: on one side the slanted edge of a chisel
     /// would be in the air.
     fn lower(&self, brush: &mut Rigid) {
-        let tip = DVec3::new(0.0, 0.0, -self.file.length_m());
+        let tip = DVec3::new(0.0, 0.0, -self.length_m);
         // An upright head may end short of its length.
         let short = (self.lowest_at_rest(&Rigid::IDENTITY) - tip.z).max(0.0);
         let upright = (brush.rotation * DVec3::Z).z;
@@ -49,7 +59,7 @@ impl BrushModel {
     /// Lifts the brush of a pen in the air until each joint of its head is [`HOVER_M`] above what lies under it: a
     /// wide leaning head reaches lower than its middle, and onto the palette beside the canvas.
     fn hover(&self, brush: &mut Rigid, plane: &Plane) {
-        let Some(desk) = &self.desk else { return };
+        let Some(desk) = self.desk else { return };
         let up = plane.normal();
         let lacking = |joint: DVec3| {
             let in_desk = plane.to_desk.point(joint);
@@ -67,5 +77,11 @@ impl BrushModel {
             }
             brush.translation.z += rise;
         }
+    }
+
+    /// Height of the lowest joint of the head in the air.
+    fn lowest_bent(&self, brush: &Rigid) -> f64 {
+        let head = SolvedHead::bent(self.tuft, brush, self.set);
+        head.heights().fold(f64::INFINITY, f64::min)
     }
 }

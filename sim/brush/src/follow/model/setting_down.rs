@@ -234,7 +234,7 @@ impl BrushModel {
     /// Bends a head as its approach to a sample would: it comes down on an endless plane and is drawn along.
     fn run_up(&mut self, tracked: &mut TrackedBrush, here: Sampled, toward: DVec2) {
         let (by_length, by_depth) = RUN_UP;
-        let depth_m = (-self.lowest_at_rest(&here.pose)).max(0.0);
+        let depth_m = (-self.reach().lowest_at_rest(&here.pose)).max(0.0);
         let way_m = by_length * self.file.length_m() + by_depth * depth_m;
         let strides = (way_m / STRIDE_M).ceil().clamp(1.0, MOST_STRIDES);
         let ground = [Obstacle::ground()];
@@ -246,7 +246,7 @@ impl BrushModel {
             at.pose.translation += (toward * way_m * (gone - 1.0)).extend(above_m);
             let brush = self.placed(tracked, &at);
             if stride == 0 {
-                tracked.head = SolvedHead::bent(&self.tuft, &brush, &self.set);
+                tracked.head = SolvedHead::bent(&self.tuft, &brush, &self.set.angles);
             }
             let (room, settings) = (&mut self.solver, &self.settings);
             tracked
