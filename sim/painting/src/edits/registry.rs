@@ -142,7 +142,9 @@ mod tests {
             let fields = |edit: &Edit| serde_json::from_str::<Value>(&edit.fields).expect("JSON");
             let mut expected = fields(&example);
             // A light had no surroundings then, which is read as even ones.
-            let light = expected.pointer_mut("/light").and_then(Value::as_object_mut);
+            let light = expected
+                .pointer_mut("/light")
+                .and_then(Value::as_object_mut);
             let added = light.and_then(|light| light.remove("environment"));
             assert!(added.is_none_or(|added| added == "Even"), "{line}");
             assert_eq!(fields(&edit), expected, "{line}");
