@@ -302,8 +302,7 @@ impl Overlay {
             | Action::Export
             | Action::Play
             | Action::Reference
-            | Action::ChooseTracing
-            | Action::ChooseEnvironment => {
+            | Action::ChooseTracing => {
                 self.files.follow(context, act, work);
             }
             Action::Keys => self.keys = !self.keys,

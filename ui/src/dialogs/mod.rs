@@ -150,10 +150,6 @@ impl Files {
                 let choose = Self::picture(known, tr!("A picture to trace"), work);
                 self.begin(Dialog::Tracing(choose));
             }
-            Action::ChooseEnvironment => {
-                let choose = Self::picture(None, tr!("A picture of the surroundings"), work);
-                self.begin(Dialog::Environment(choose));
-            }
             _ => return false,
         }
         true
@@ -232,6 +228,10 @@ impl Files {
         self.remember(work);
         self.take_dropped(context, reference, work);
         self.environment.take_in(work);
+        if work.requests.takes_environment() {
+            let choose = Self::picture(None, tr!("A picture of the surroundings"), work);
+            self.begin(Dialog::Environment(choose));
+        }
         dropped::hint(context);
         if let Some(act) = save_status::show(context, work) {
             self.follow(context, act, work);

@@ -27,8 +27,6 @@ pub(crate) enum Action {
     ChooseTracing,
     /// Show or hide it.
     Tracing,
-    /// Choose a picture of surroundings that gloss mirrors.
-    ChooseEnvironment,
     /// The newest step back.
     Undo,
     /// The newest undo back.

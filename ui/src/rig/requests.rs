@@ -18,6 +18,7 @@ pub(crate) struct Requests {
     acts: Vec<Action>,
     devices: Vec<DeviceOrder>,
     sessions: Vec<SessionOrder>,
+    environment: bool,
 }
 
 impl Requests {
@@ -70,6 +71,17 @@ impl Requests {
     #[must_use]
     pub(crate) fn take_session_orders(&mut self) -> Vec<SessionOrder> {
         std::mem::take(&mut self.sessions)
+    }
+
+    /// Asks for a picture of surroundings to be chosen.
+    pub(crate) fn choose_environment(&mut self) {
+        self.environment = true;
+    }
+
+    /// True once after a picture of surroundings was asked for.
+    #[must_use]
+    pub(crate) fn takes_environment(&mut self) -> bool {
+        std::mem::take(&mut self.environment)
     }
 
     /// Does what a key would do.

@@ -140,7 +140,14 @@ mod tests {
             let entry = EditEntry::find(&edit).expect(line);
             let example = (entry.example)().expect("in range");
             let fields = |edit: &Edit| serde_json::from_str::<Value>(&edit.fields).expect("JSON");
-            assert_eq!(fields(&edit), fields(&example), "{line}");
+            let mut expected = fields(&example);
+            // A light had no surroundings then, which is read as even ones.
+            let light = expected
+                .pointer_mut("/light")
+                .and_then(Value::as_object_mut);
+            let added = light.and_then(|light| light.remove("environment"));
+            assert!(added.is_none_or(|added| added == "Even"), "{line}");
+            assert_eq!(fields(&edit), expected, "{line}");
             (entry.read)(&edit).expect(line);
             count += 1;
         }

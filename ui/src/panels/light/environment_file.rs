@@ -69,7 +69,6 @@ mod tests {
     use maulstick_types::command::Command;
 
     use super::*;
-    use crate::input::keys::Action;
     use crate::test_support::overlay_bench::{press, window, write};
 
     /// Writes a grey picture of this size.
@@ -95,7 +94,7 @@ mod tests {
         grey(&hall, 64, 32);
         grey(&narrow, 40, 32);
         let mut choose = |path: &Path| {
-            harness.state_mut().requests.act(Action::ChooseEnvironment);
+            harness.state_mut().requests.choose_environment();
             harness.run_steps(3);
             harness.get_by_label("A picture of the surroundings");
             write(&mut harness, "Picture", &path.display().to_string());

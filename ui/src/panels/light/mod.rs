@@ -20,7 +20,6 @@ use maulstick_types::values::ValueError;
 use maulstick_ui_kit::pending::Pending;
 use maulstick_ui_kit::rows::{Number, Sliders, below, choice, note, row, wrong};
 
-use crate::input::keys::Action;
 use crate::panels::Panel;
 use crate::spectrum_file;
 use crate::widgets::context::{PanelContext, ask};
@@ -230,7 +229,7 @@ fn surroundings(ui: &mut Ui, light: &mut Light, work: &mut PanelContext<'_>) {
             let named = Environment::named(Environment::NAMES[place]);
             light.environment = named.unwrap_or_default();
         }
-        None => work.requests.act(Action::ChooseEnvironment),
+        None => work.requests.choose_environment(),
     }
 }
 
