@@ -143,7 +143,8 @@ fn slopes_go_on_over_the_borders_of_tiles() {
 fn a_flat_film_is_lit_to_its_unlit_colour_and_a_ridge_is_not() {
     let lamp = upper_left();
     let both = |store: &TileStore| {
-        let lit = drawn(store, move |spot| lit(spot, &lamp), Some(around(&lamp)));
+        let (around, lamp) = (around(&lamp), lamp.clone());
+        let lit = drawn(store, move |spot| lit(spot, &lamp), Some(around));
         (lit, drawn(store, |spot| flat(spot, [1.0; 3]), None))
     };
     let (flat, unlit) = both(&store(|_, _| 50_000.0));
