@@ -27,9 +27,9 @@ fn full() -> Place {
     let brush = maulstick_brush::BrushFile::library("flat").expect("a brush");
     let config = place.done(&["up", "--print-config"]).stdout;
     let config = String::from_utf8(config).expect("UTF-8");
-    let weave = vec![127; 64];
+    let weave = vec![127; 128];
     let mut png = Vec::new();
-    let mut encoder = png::Encoder::new(&mut png, 8, 8);
+    let mut encoder = png::Encoder::new(&mut png, 16, 8);
     encoder.set_color(png::ColorType::Grayscale);
     let mut writer = encoder.write_header().expect("a header");
     writer.write_image_data(&weave).expect("pixels");

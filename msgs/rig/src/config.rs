@@ -399,23 +399,23 @@ mod tests {
                 38,
                 ["'linaer'", "'linear'"],
             ),
-            ("[node.paint]", "[node.piant]", 89, ["'piant'", "'paint'"]),
+            ("[node.paint]", "[node.piant]", 90, ["'piant'", "'paint'"]),
             (
                 "[node.paint]",
                 "[node.brush-mian]",
-                89,
+                90,
                 ["'brush-mian'", "'brush-main'"],
             ),
             (
                 "profile = \"srgb\"",
                 "profile = \"sgrb\"",
-                79,
+                80,
                 ["'srgb'", "ICC"],
             ),
             (
                 "gamut = \"soft\"",
                 "gamut = \"sfot\"",
-                80,
+                81,
                 ["'sfot'", "'soft'"],
             ),
         ] {

@@ -47,9 +47,12 @@ impl Spread {
         // Where painting falls behind, steps become longer, but not what is seen of them.
         let usual = 1.0 / step.traits.cell_per_reference;
         let length = step.traits.step_cells.min(usual) / (1.0 + slope * slope).sqrt();
+        let cells = (length.round() as u32).min(2 * REACH as u32);
+        // A longer step on coarse cells draws its head over a cell's neighbours itself.
+        let drawn = cells == 1 && step.traits.step_cells > 1.5;
         Self {
             axis: axis as u32,
-            cells: (length.round() as u32).min(2 * REACH as u32),
+            cells: if drawn { 0 } else { cells },
             slope: (slope * SLOPES as f32).round() as i32,
         }
     }

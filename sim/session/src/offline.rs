@@ -107,7 +107,7 @@ impl Offline {
         self.begin_take(Vec::new())
     }
 
-    /// Begins another take with the brush in hand; its strokes take the next of `loads` in turn. The take before has ended.
+    /// Begins another take with the brush in hand, brought into shape; its strokes take the next of `loads` in turn. The take before has ended.
     ///
     /// # Errors
     /// [`EditError`] where a load is wrong, or as [`end_take`](Self::end_take).
@@ -117,6 +117,7 @@ impl Offline {
         let player = [self.player.source, self.player.epoch];
         self.sequencer.begin_own_take(&self.brush, player, loads)?;
         self.update_scene();
+        self.model.straighten();
         Ok(())
     }
 

@@ -80,6 +80,11 @@ impl Desk {
     fn set(&mut self) -> Set {
         self.now_ns += 3_600_000 * MS;
         self.pen(0.01, 0.0);
+        self.kept()
+    }
+
+    /// The bend that the painting keeps for its brush.
+    fn kept(&mut self) -> Set {
         let scene = self.offline.painting_mut().scene();
         let set = scene.set("main").map(|set| set.angles_rad.clone());
         set.unwrap_or_default()
@@ -122,7 +127,7 @@ fn a_bend_is_undone_saved_and_taken_out() {
     assert!(apart(&redone, &heavy) < SAME, "{}", apart(&redone, &heavy));
     desk.close();
     let mut again = Desk::at(&path);
-    let opened = again.set();
+    let opened = again.kept();
     assert!(apart(&opened, &heavy) < SAME, "{}", apart(&opened, &heavy));
     let undone = again.edit(undo);
     assert!(apart(&undone, &light) < SAME);

@@ -9,6 +9,7 @@ use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_motion::{Mirror, TakeSample, mirrored};
 use maulstick_optics::PaintLibrary;
+use maulstick_painting::edits::Scrape;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_session::Offline;
 use maulstick_types::stylus::StylusPose;
@@ -18,6 +19,8 @@ const CELLS: [usize; 2] = [256, 256];
 const CELL_M: f64 = 5e-4;
 /// Cells of a block over which paint is compared: tooth and single bristles are finer.
 const BLOCK: usize = 4;
+/// Paintings of a motion.
+const PAINTINGS: usize = 3;
 /// Cells of a tile.
 const TILE: usize = 64;
 
@@ -27,7 +30,8 @@ fn brush(kind: &str) -> BrushFile {
     file.scaled_to(12.0).expect("a size")
 }
 
-/// Paint in blocks of the canvas, m: rows from below.
+/// Paint in blocks of the canvas, m, rows from below: mean of several paintings, each with its bristles in another
+/// disorder.
 fn painted(motion: &[TakeSample], kind: &str) -> Vec<Vec<f64>> {
     let setup = PaintingSetup {
         cells: CELLS.map(|side| side as u32),
@@ -36,17 +40,29 @@ fn painted(motion: &[TakeSample], kind: &str) -> Vec<Vec<f64>> {
     };
     let painting = Painting::new(&setup, PaintLibrary::measured().expect("whole")).expect("one");
     let load = "Ultramarine Blue".parse().expect("a mixture");
-    let mut offline = Offline::new(painting, "main", brush(kind), 0.5, vec![load]).expect("set up");
+    let loads = vec![load];
+    let mut offline =
+        Offline::new(painting, "main", brush(kind), 0.5, loads.clone()).expect("set up");
     let samples: Vec<_> = motion
         .iter()
         .map(|taken| (taken.time_ns, &taken.sample))
         .collect();
-    offline.follow(&samples, |_, _| {}).expect("painted");
-    blocks(&offline.into_painting())
+    let mut sums = vec![vec![0.0; CELLS[0] / BLOCK]; CELLS[1] / BLOCK];
+    for _ in 0..PAINTINGS {
+        offline.follow(&samples, |_, _| {}).expect("painted");
+        offline.end_take().expect("ended");
+        add_blocks(offline.painting_mut(), &mut sums);
+        let all = Scrape {
+            region: None,
+            surface: 0,
+        };
+        offline.edit(all).expect("scraped");
+        offline.begin_take(loads.clone()).expect("begun");
+    }
+    sums
 }
 
-fn blocks(painting: &Painting) -> Vec<Vec<f64>> {
-    let mut sums = vec![vec![0.0; CELLS[0] / BLOCK]; CELLS[1] / BLOCK];
+fn add_blocks(painting: &Painting, sums: &mut [Vec<f64>]) {
     let store = painting.store(0).expect("a canvas");
     for (id, version) in store.iter() {
         for (_, plane) in version.tile.iter().flat_map(|tile| tile.wet().to_vec()) {
@@ -55,11 +71,11 @@ fn blocks(painting: &Painting) -> Vec<Vec<f64>> {
                     id.x as usize * TILE + cell % TILE,
                     id.y as usize * TILE + cell / TILE,
                 ];
-                sums[at[1] / BLOCK][at[0] / BLOCK] += f64::from(*count) * QUANTUM_M;
+                sums[at[1] / BLOCK][at[0] / BLOCK] +=
+                    f64::from(*count) * QUANTUM_M / PAINTINGS as f64;
             }
         }
     }
-    sums
 }
 
 /// The blocks in a mirror.

@@ -227,6 +227,7 @@ impl Solver {
     pub(super) fn begin_take(&mut self) {
         self.backlog.clear();
         drop(self.model.finish());
+        self.model.straighten();
         (self.pace, self.is_holding) = (Pace::default(), false);
     }
 

@@ -27,8 +27,8 @@ const RIM_STRAY_MOST: f32 = 0.15;
 const RIM_REGROUPS_M: f64 = 3e-3;
 /// Greatest way by which the points of a tress of a worn head of hog and of soft hair lie before or behind the others on
 /// the surface, m, and the most of it by half the head's width.
-const WORN_M: [f32; 2] = [0.6e-3, 0.06e-3];
-const WORN_MOST: f64 = 0.3;
+const WORN_M: [f32; 2] = [1.3e-3, 0.06e-3];
+const WORN_MOST: f64 = 0.315;
 /// Width of a tress by that of one that is worn alike.
 const WORN_TRESS: f32 = 0.42;
 /// Width of a tress by that of one at the rim.

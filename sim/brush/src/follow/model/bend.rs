@@ -1,6 +1,6 @@
 //! The bend that stays in a head, its permanent set: from stroke to stroke, over pauses, and where its path is lost.
 //!
-//! It goes when another brush is taken up, when the brush is lifted out of a jar of cleaner, on whose rim it is wiped, and
+//! It goes when another brush is taken up, when a take begins, when the brush is lifted out of a jar of cleaner, on whose rim it is wiped, and
 //! when the painting says so.
 
 use maulstick_num::geometry::Rigid;
@@ -45,6 +45,14 @@ impl BrushModel {
             if let Some(tracked) = &mut self.tracked {
                 tracked.reshaped = Some(set.angles_rad.clone());
             }
+        }
+    }
+
+    /// Brings the head into shape for a take, which is the same whatever the brush did before.
+    pub fn straighten(&mut self) {
+        self.set.angles.clear();
+        if let Some(tracked) = &mut self.tracked {
+            tracked.reshaped = Some(Vec::new());
         }
     }
 

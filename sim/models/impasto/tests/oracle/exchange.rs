@@ -14,8 +14,7 @@ use maulstick_model::interface::{Handling, Transfer};
 
 use crate::scene::{CELL_M, Random, Scene, lying};
 
-/// Exchange rule of a head: the share kept along a reference cell, whether it is a blade, and the share of a
-/// skin that is swapped along a reference cell without a gap.
+/// Exchange rule of a head: the share kept and that of a skin swapped without a gap, along a reference cell.
 #[derive(Clone, Copy)]
 pub(crate) struct Rule {
     kept: f64,
@@ -390,10 +389,9 @@ fn lay_on_top(scene: &mut Scene, seed: u64) {
     }
 }
 
-/// A scene of the test, its footprint and the rule of its head.
+/// A scene of the test, whose deposits stay on their cells, its footprint and the rule of its head.
 fn prepared(seed: usize) -> (Scene, Footprint, Rule) {
     let mut scene = Scene::new(seed as u64);
-    // Its deposits stay on their cells.
     scene.traits.step_cells = 0.0;
     let mut footprint = Footprint::default();
     footprint.find(&mut scene.step());
