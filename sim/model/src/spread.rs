@@ -49,7 +49,7 @@ impl Spread {
         let length = step.traits.step_cells.min(usual) / (1.0 + slope * slope).sqrt();
         let cells = (length.round() as u32).min(2 * REACH as u32);
         // A longer step on coarse cells draws its head over a cell's neighbours itself.
-        let drawn = cells == 1 && step.traits.step_cells > 1.5;
+        let drawn = cells == 1 && step.traits.step_cells > 1.5 * usual;
         Self {
             axis: axis as u32,
             cells: if drawn { 0 } else { cells },
