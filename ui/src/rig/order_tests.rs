@@ -165,7 +165,7 @@ impl Studio {
                 source: name_hash(BRUSH),
                 epoch: 77,
             });
-            self.busy_ns = self.now_ns() + (after - before) * u64::from(self.dice(30)) * MS;
+            self.busy_ns = self.now_ns() + (after - before) * u64::from(self.dice(45)) * MS;
             self.behind_ns = self.behind_ns.max(self.busy_ns - self.now_ns());
         }
         if (self.now_ns() / MS).is_multiple_of(FRAME_MS) {
