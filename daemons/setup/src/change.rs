@@ -23,7 +23,7 @@ pub struct DeviceChange {
     pub switches: Option<Vec<String>>,
     /// Largest force, N.
     pub max_force_n: Option<f64>,
-    /// Drag of the paint by its true size.
+    /// Factor on the drag of the paint.
     pub paint_drag: Option<f64>,
     /// Height of the relief that the hand feels by its true height.
     pub relief: Option<f64>,

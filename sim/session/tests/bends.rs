@@ -1,13 +1,9 @@
 //! The bend that stays in a brush goes with the painting: undone, done again, saved and opened, and ended by an edit.
 
-use std::path::Path;
+mod desk;
 
-use maulstick_brush::BrushFile;
-use maulstick_document::{Access, Document, DocumentSettings};
-use maulstick_optics::PaintLibrary;
+use desk::Desk;
 use maulstick_painting::edits::{Clean, Redo, Reshape, Undo};
-use maulstick_painting::{Painting, PaintingSetup, Sequencer};
-use maulstick_session::{Autosave, Offline};
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 use maulstick_types::values::BrushName;
 
@@ -15,42 +11,7 @@ const MS: u64 = 1_000_000;
 
 type Set = Vec<[f32; 2]>;
 
-struct Desk {
-    offline: Offline,
-    autosave: Autosave,
-    now_ns: u64,
-}
-
 impl Desk {
-    fn at(path: &Path) -> Self {
-        let settings = DocumentSettings::new(path, Access::Paint);
-        let (document, opened) = Document::open(&settings).expect("opened");
-        let (mut sequencer, since) = match opened {
-            Some(opened) => {
-                let since = opened.snapshot().versions;
-                (opened.sequencer().expect("whole"), since)
-            }
-            None => {
-                let setup = PaintingSetup {
-                    cells: [160, 120],
-                    ..PaintingSetup::default()
-                };
-                let library = PaintLibrary::measured().expect("whole");
-                let pager = document.pager().clone();
-                let painting = Painting::paged(&setup, library, pager).expect("a painting");
-                (Sequencer::new(painting), 0)
-            }
-        };
-        let autosave = Autosave::new(document, &mut sequencer, since);
-        let file = BrushFile::library("mop").expect("mop");
-        let offline = Offline::resume(sequencer, "main", file, 0.5, Vec::new());
-        Self {
-            offline: offline.expect("begun"),
-            autosave,
-            now_ns: 0,
-        }
-    }
-
     /// Holds a pen over the canvas, or presses it.
     fn pen(&mut self, x_m: f64, pressure: f64) {
         let sample = StylusSample {
@@ -115,7 +76,7 @@ fn a_bend_is_undone_saved_and_taken_out() {
     const SAME: f32 = 2e-5;
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("bends.maul");
-    let mut desk = Desk::at(&path);
+    let mut desk = Desk::with(&path, "mop");
     let unbent = desk.set();
     let light = desk.stroke(0.2);
     let heavy = desk.stroke(0.8);
@@ -126,7 +87,7 @@ fn a_bend_is_undone_saved_and_taken_out() {
     let redone = desk.edit(Redo { brush: None });
     assert!(apart(&redone, &heavy) < SAME, "{}", apart(&redone, &heavy));
     desk.close();
-    let mut again = Desk::at(&path);
+    let mut again = Desk::with(&path, "mop");
     let opened = again.kept();
     assert!(apart(&opened, &heavy) < SAME, "{}", apart(&opened, &heavy));
     let undone = again.edit(undo);

@@ -1,16 +1,16 @@
 //! Replaying the record of a painting that was painted in its document, closed and continued gives the same paint, and
 //! its log lists the actions.
 
+mod desk;
+
 use std::path::Path;
 
-use maulstick_brush::BrushFile;
+use desk::Desk;
 use maulstick_document::{Access, Document, DocumentError, DocumentSettings, Opened};
-use maulstick_optics::PaintLibrary;
 use maulstick_painting::edits::{Dry, Load, Redo, Undo};
 use maulstick_painting::sequencer::Accepted;
-use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_session::{
-    Autosave, LoggedWhat, Offline, Reexecution, TilePrints, WorkClock, painting_log, tile_prints,
+    LoggedWhat, Reexecution, TilePrints, WorkClock, painting_log, tile_prints,
 };
 use maulstick_types::paint::Decision;
 use maulstick_types::scene::CANVAS;
@@ -18,13 +18,6 @@ use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 use maulstick_types::values::{BrushName, LayerName, Share, Ticks};
 
 const MS: u64 = 1_000_000;
-
-/// Brush and paint with a document that is brought up to date each second of painting.
-struct Desk {
-    offline: Offline,
-    autosave: Autosave,
-    now_ns: u64,
-}
 
 fn settings(path: &Path, access: Access) -> DocumentSettings {
     DocumentSettings::new(path, access)
@@ -36,34 +29,6 @@ fn read(path: &Path) -> (Document, Opened) {
 }
 
 impl Desk {
-    fn at(path: &Path) -> Self {
-        let (document, opened) = Document::open(&settings(path, Access::Paint)).expect("opened");
-        let (mut sequencer, since) = match opened {
-            Some(opened) => {
-                let since = opened.snapshot().versions;
-                (opened.sequencer().expect("whole"), since)
-            }
-            None => {
-                let setup = PaintingSetup {
-                    cells: [160, 120],
-                    ..PaintingSetup::default()
-                };
-                let library = PaintLibrary::measured().expect("whole");
-                let pager = document.pager().clone();
-                let painting = Painting::paged(&setup, library, pager).expect("a painting");
-                (Sequencer::new(painting), 0)
-            }
-        };
-        let autosave = Autosave::new(document, &mut sequencer, since);
-        let file = BrushFile::library("flat").expect("flat");
-        let offline = Offline::resume(sequencer, "main", file, 0.5, Vec::new());
-        Self {
-            offline: offline.expect("begun"),
-            autosave,
-            now_ns: 0,
-        }
-    }
-
     fn edit(&mut self, edit: impl Into<maulstick_types::Edit>) {
         self.offline.edit(edit).expect("done");
         self.autosave_now();
@@ -114,7 +79,7 @@ impl Desk {
 
 /// A painting with strokes, loads, layers, drying, undo and redo, closed and continued.
 fn paint(path: &Path) {
-    let mut desk = Desk::at(path);
+    let mut desk = Desk::with(path, "flat");
     desk.load("Cobalt Blue=0.7,Titanium White=0.3");
     desk.stroke(2e-3);
     desk.stroke(-2e-3);
@@ -133,7 +98,7 @@ fn paint(path: &Path) {
     desk.offline.wait(60, |_| {});
     desk.autosave_now();
     desk.close();
-    let mut desk = Desk::at(path);
+    let mut desk = Desk::with(path, "flat");
     desk.load("Pyrrole Red");
     desk.stroke(0.0);
     desk.edit(Undo { brush: None });
@@ -235,7 +200,7 @@ fn the_log_says_what_was_done() {
 fn a_record_keeps_to_its_limit() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.maul");
-    let mut desk = Desk::at(&path);
+    let mut desk = Desk::with(&path, "flat");
     let limit = 30_000;
     desk.offline.painting_mut().set_record_quota(limit);
     let mut largest = 0;

@@ -34,7 +34,7 @@ pub struct UseOptions {
     /// Largest force, N
     #[arg(long, value_name = "N")]
     max_force: Option<f64>,
-    /// Drag of the paint by its true size, 0 to 10
+    /// Factor on the drag of the paint, 0 to 10
     #[arg(long, value_name = "TIMES")]
     paint_drag: Option<f64>,
     /// Height of the relief that the hand feels by its true height, 0 to 1

@@ -76,7 +76,7 @@ pub struct DeviceSection {
     /// Largest force, N.
     #[serde(default = "default_force")]
     pub max_force_n: f64,
-    /// Drag of the paint on the hand by its true size (Baxter 2004, § 8.9.2), 0 to [`MOST_PAINT_DRAG`].
+    /// Factor on the drag of the paint on the hand (Baxter 2004, § 8.9.2), 0 to [`MOST_PAINT_DRAG`].
     #[serde(default = "default_paint_drag", skip_serializing_if = "is_true_size")]
     pub paint_drag: f64,
     /// Height of the relief that the hand feels, of dried and stiff paint, tooth and edges, by its true height, 0 to 1.

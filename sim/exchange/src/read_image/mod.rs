@@ -186,34 +186,20 @@ impl Image {
 
     /// Linear sRGB of a row, 0 to 1; row 0 is the top.
     pub fn colours(&self, row: usize, into: &mut Vec<[f32; 3]>) {
-        let (channels, has_alpha) = self.channels();
-        let samples = self.samples(row);
+        let (samples, shares) = self.opaque(row);
+        let pixels = self.light(samples, self.channels().0).into_iter();
+        let over_white = |(colour, share): ([f32; 3], f32)| {
+            colour.map(|channel| share * channel.clamp(0.0, 1.0) + (1.0 - share))
+        };
         into.clear();
-        let within = |colour: [f32; 3]| colour.map(|channel| channel.clamp(0.0, 1.0));
-        if !has_alpha {
-            into.extend(self.light(samples, channels).into_iter().map(within));
-        } else {
-            let (samples, shares) = self.parted(samples, channels);
-            let pixels = self.light(samples, channels).into_iter().map(within);
-            let pixels = pixels.zip(shares);
-            let over_white = |colour: [f32; 3], share: f32| {
-                colour.map(|channel| share * channel + (1.0 - share))
-            };
-            into.extend(pixels.map(|(colour, share)| over_white(colour, share)));
-        }
+        into.extend(pixels.zip(shares).map(over_white));
     }
 
     /// Linear sRGB of a row, 0 or more, transparent pixels over black; row 0 is the top.
     pub fn radiance(&self, row: usize, into: &mut Vec<[f32; 3]>) {
-        let (channels, has_alpha) = self.channels();
-        let samples = self.samples(row);
-        let (samples, shares) = if has_alpha {
-            self.parted(samples, channels)
-        } else {
-            (samples, Vec::new())
-        };
-        let shares = shares.into_iter().chain(std::iter::repeat(1.0));
-        let pixels = self.light(samples, channels).into_iter().zip(shares);
+        let (samples, shares) = self.opaque(row);
+        let pixels = self.light(samples, self.channels().0).into_iter();
+        let pixels = pixels.zip(shares);
         into.clear();
         into.extend(pixels.map(|(colour, share)| colour.map(|v| share * v.max(0.0))));
     }
@@ -241,6 +227,18 @@ impl Image {
             }
             other => self.colours.of_whole(&other.into_whole(), channels),
         }
+    }
+
+    /// The samples of a row without opacity, and the opacity of its pixels.
+    fn opaque(&self, row: usize) -> (Samples, impl Iterator<Item = f32>) {
+        let (channels, has_alpha) = self.channels();
+        let samples = self.samples(row);
+        let (samples, shares) = if has_alpha {
+            self.parted(samples, channels)
+        } else {
+            (samples, Vec::new())
+        };
+        (samples, shares.into_iter().chain(std::iter::repeat(1.0)))
     }
 
     /// A row without its opacity, of which its colours are independent now, and the opacity.
@@ -286,18 +284,12 @@ impl Image {
     /// Heights of a row, 0 to 1: the encoded values of a grey picture, the luma (BT.709) of another.
     /// Transparent pixels are 1. Row 0 is the top.
     pub fn heights(&self, row: usize, into: &mut Vec<[f32; 1]>) {
-        let (channels, has_alpha) = self.channels();
-        let samples = self.samples(row);
-        let (samples, shares) = if has_alpha {
-            self.parted(samples, channels)
-        } else {
-            (samples, Vec::new())
-        };
+        let (samples, shares) = self.opaque(row);
+        let channels = self.channels().0;
         let values: Vec<f32> = match samples {
             Samples::Floats(row) => row.iter().map(|v| v.clamp(0.0, 1.0)).collect(),
             Samples::Whole(row) => row.iter().map(|v| f32::from(*v) / 65_535.0).collect(),
         };
-        let shares = shares.into_iter().chain(std::iter::repeat(1.0));
         into.clear();
         into.extend(
             values

@@ -1,7 +1,7 @@
 //! The bend that stays in a head, its permanent set: from stroke to stroke, over pauses, and where its path is lost.
 //!
-//! It goes when another brush is taken up, when a take begins, when the brush is lifted out of a jar of cleaner, on whose rim it is wiped, and
-//! when the painting says so.
+//! It goes when another brush is taken up, when a take begins, when the brush is lifted out of a jar of cleaner, on whose
+//! rim it is wiped, and when the painting says so.
 
 use maulstick_num::geometry::Rigid;
 use maulstick_types::scene::BrushSet;
